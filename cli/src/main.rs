@@ -1,0 +1,3 @@
+//! The command `mipless`.
+
+fn main() {}

@@ -1,0 +1,6 @@
+//! The IR, the moment algebra, the planner, the WGSL emitter and the CPU batch evaluator.
+//!
+//! This crate knows no node by name: it receives node definitions as a slice.
+
+pub mod float;
+pub mod ir;

@@ -1,0 +1,142 @@
+//! The resolved graph: names are ids, sub-graphs are expanded, types are promoted, and nodes stand
+//! in topological order.
+
+use crate::{Literal, NodeSpec, Type};
+
+/// A node of a graph, by its position: inputs come before their users.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeId(pub u32);
+
+impl NodeId {
+    /// The position in [`Graph::nodes`].
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// An input of a graph, by its position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ParameterId(pub u32);
+
+impl ParameterId {
+    /// The position in [`Graph::parameters`].
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Where the value of a node's input comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A literal of the input's own type (not yet promoted further); defaults are literals too.
+    Literal(Literal),
+    /// The output `out` of a node.
+    Node(NodeId),
+    /// An input of the graph: the same everywhere on the surface, changed live.
+    Parameter(ParameterId),
+    /// The surface's texture coordinates, a `vector2`.
+    Surface,
+}
+
+/// An input of a node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// Where the value comes from.
+    pub source: Source,
+    /// The type of the source.
+    pub from: Type,
+    /// The type that the node sees: `from` is promoted to it (floats broadcast, a colour gains an
+    /// alpha of 1). [`Type::String`] for choices and stops.
+    pub ty: Type,
+}
+
+/// A node.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// The name in the document; inside sub-graphs, the path `outer/inner`.
+    pub name: String,
+    /// The JSON pointer of the node in the document.
+    pub pointer: String,
+    /// The position of its definition in the catalogue that the graph was resolved with.
+    pub definition: usize,
+    /// Its spec.
+    pub spec: &'static NodeSpec,
+    /// The type of `out`.
+    pub ty: Type,
+    /// The inputs, in the order of the spec's.
+    pub inputs: Vec<Input>,
+}
+
+impl Node {
+    /// The input of that name.
+    ///
+    /// # Panics
+    /// If the spec has no such input: a bug of the caller.
+    pub fn input(&self, name: &str) -> &Input {
+        let index = self.spec.input(name);
+        &self.inputs[index.unwrap_or_else(|| panic!("{} has no input {name}", self.spec.name))]
+    }
+
+    /// The literal of a uniform input.
+    ///
+    /// # Panics
+    /// If the input is not uniform: a bug of the caller.
+    pub fn literal(&self, name: &str) -> &Literal {
+        match &self.input(name).source {
+            Source::Literal(literal) => literal,
+            other => panic!("input {name} of {} is not uniform: {other:?}", self.spec.name),
+        }
+    }
+}
+
+/// An input of the graph.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// The name in the document.
+    pub name: String,
+    /// A float, integer, boolean, vector or colour.
+    pub ty: Type,
+    /// The default.
+    pub value: Literal,
+    /// The smallest value that may be set, a component.
+    pub min: Option<f32>,
+    /// The largest value that may be set, a component.
+    pub max: Option<f32>,
+    /// Where a slider starts.
+    pub soft_min: Option<f32>,
+    /// Where a slider ends.
+    pub soft_max: Option<f32>,
+    /// What it means.
+    pub doc: String,
+}
+
+/// An output of the graph.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// The name in the document.
+    pub name: String,
+    /// The node whose `out` it is.
+    pub node: NodeId,
+    /// Its type.
+    pub ty: Type,
+}
+
+/// A resolved graph without errors of names, cycles, types or ranges.
+#[derive(Clone, Debug)]
+pub struct Graph {
+    /// The document's name.
+    pub name: String,
+    /// The graph's inputs, in the document's order.
+    pub parameters: Vec<Parameter>,
+    /// The nodes; inputs before their users.
+    pub nodes: Vec<Node>,
+    /// The outputs, in the document's order; at least one.
+    pub outputs: Vec<Output>,
+}
+
+impl Graph {
+    /// The node `id`.
+    pub fn node(&self, id: NodeId) -> &Node {
+        &self.nodes[id.index()]
+    }
+}

@@ -1,0 +1,246 @@
+//! Node specs as data: the reference pages, the JSON Schema and the catalogue dump are generated
+//! from them, and the resolver checks documents against them.
+
+use crate::Type;
+
+/// What kind of node it is; orders the catalogue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Category {
+    /// Coordinates, constants.
+    Input,
+    /// Sources of detail.
+    Noise,
+    /// Deterministic functions of position.
+    Pattern,
+    /// Sums and products.
+    Arithmetic,
+    /// Functions of one signal.
+    Transfer,
+    /// Colour.
+    Color,
+    /// Coordinates from coordinates.
+    Coordinate,
+    /// Packing and unpacking.
+    Channel,
+}
+
+impl Category {
+    /// A heading.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Input => "input",
+            Self::Noise => "noise",
+            Self::Pattern => "pattern",
+            Self::Arithmetic => "arithmetic",
+            Self::Transfer => "transfer",
+            Self::Color => "color",
+            Self::Coordinate => "coordinate",
+            Self::Channel => "channel",
+        }
+    }
+}
+
+/// What a port takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PortType {
+    /// This type, or one that converts to it.
+    Exactly(Type),
+    /// Any of `float`, `vector2…4`, `color3`, `color4`: the node's own type is the widest of all
+    /// such ports, and each is promoted to it.
+    Any,
+    /// One of these names; always uniform.
+    Choice(&'static [&'static str]),
+    /// A list of `{ "at": number, "value": number or colour }`; always uniform.
+    Stops,
+}
+
+/// What an unconnected port holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Default {
+    /// A number (broadcast to the port's type).
+    Float(f32),
+    /// An integer.
+    Integer(i32),
+    /// A truth value.
+    Boolean(bool),
+    /// Two numbers.
+    Vector2([f32; 2]),
+    /// A colour.
+    Color3([f32; 3]),
+    /// One of the port's names.
+    Choice(&'static str),
+    /// Stops `(at, value)` of a float ramp.
+    Stops(&'static [(f32, f32)]),
+    /// The surface's texture coordinates.
+    Surface,
+}
+
+/// The numbers that a port accepts, and those that an editor offers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The smallest accepted.
+    pub min: f32,
+    /// The largest accepted.
+    pub max: f32,
+    /// Where a slider starts.
+    pub soft_min: f32,
+    /// Where a slider ends.
+    pub soft_max: f32,
+    /// Whether 0 is refused although it lies within (a divisor).
+    pub nonzero: bool,
+}
+
+impl Range {
+    /// Any finite number; the slider goes from `soft_min` to `soft_max`.
+    pub const fn soft(soft_min: f32, soft_max: f32) -> Self {
+        Self { min: f32::MIN, max: f32::MAX, soft_min, soft_max, nonzero: false }
+    }
+
+    /// Numbers of `[min, max]`; the slider covers the same.
+    pub const fn hard(min: f32, max: f32) -> Self {
+        Self { min, max, soft_min: min, soft_max: max, nonzero: false }
+    }
+
+    /// The same with another slider.
+    pub const fn with_soft(self, soft_min: f32, soft_max: f32) -> Self {
+        Self { soft_min, soft_max, ..self }
+    }
+
+    /// The same without 0.
+    pub const fn nonzero(self) -> Self {
+        Self { nonzero: true, ..self }
+    }
+}
+
+/// An input of a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PortSpec {
+    /// MaterialX's name.
+    pub name: &'static str,
+    /// What it takes.
+    pub ty: PortType,
+    /// What it holds when nothing is said.
+    pub default: Default,
+    /// Whether it takes literals only (counts, seeds, enumerations, stops, files).
+    pub uniform: bool,
+    /// The numbers that it accepts.
+    pub range: Range,
+    /// The unit: `"dimensionless"`, `"degrees"`, `"radians"`, `"uv"`, `"cycles per uv"`, `"octaves"`…
+    pub unit: &'static str,
+    /// One sentence.
+    pub doc: &'static str,
+}
+
+impl PortSpec {
+    /// A port that takes a signal of this type; range soft [0, 1], dimensionless.
+    pub const fn new(name: &'static str, ty: PortType, default: Default, doc: &'static str) -> Self {
+        let uniform = matches!(ty, PortType::Choice(_) | PortType::Stops);
+        Self { name, ty, default, uniform, range: Range::soft(0.0, 1.0), unit: "dimensionless", doc }
+    }
+
+    /// The same, literal only.
+    pub const fn uniform(self) -> Self {
+        Self { uniform: true, ..self }
+    }
+
+    /// The same with a range.
+    pub const fn range(self, range: Range) -> Self {
+        Self { range, ..self }
+    }
+
+    /// The same with a unit.
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+}
+
+/// The type of a node's output `out`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OutputType {
+    /// This type.
+    Exactly(Type),
+    /// The widest of the [`PortType::Any`] inputs.
+    Widest,
+    /// The type of the values of the [`PortType::Stops`] input.
+    Stops,
+}
+
+/// The parts of a node's reference page; Markdown without headings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Doc {
+    /// *What it computes*, with the formula.
+    pub computes: &'static str,
+    /// *Statistics*: mean, covariance, hypotheses; exact or approximate.
+    pub statistics: &'static str,
+    /// *Accuracy*: the largest error, and what holds it.
+    pub accuracy: &'static str,
+    /// *References*: paper and equation.
+    pub references: &'static str,
+}
+
+/// How a node acts on the class of its inputs, for these inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Behaviour {
+    /// A literal.
+    Constant,
+    /// The surface's position: within a footprint, exactly Gaussian.
+    Position,
+    /// A noise of position, Gaussian up to `deviation` = max |CDF − Φ|.
+    Gaussian {
+        /// Dimensionless.
+        deviation: f32,
+    },
+    /// A linear combination of its varying inputs.
+    Linear,
+    /// A product of varying inputs.
+    Product,
+    /// A non-linear function of its varying inputs.
+    Function,
+    /// A non-linear function of position alone, filtered in closed form.
+    Pattern,
+    /// No statistics, for this reason.
+    Unknown(&'static str),
+}
+
+/// What a class rule sees of a node's inputs.
+pub trait InputView {
+    /// Whether the input varies over the surface (is connected to a node that does).
+    fn varies(&self, port: &str) -> bool;
+    /// The truth value of a uniform port.
+    fn flag(&self, port: &str) -> bool;
+    /// The chosen name of a uniform port.
+    fn choice(&self, port: &str) -> &str;
+}
+
+/// The node's class rule.
+pub type ClassRule = fn(&dyn InputView) -> Behaviour;
+
+/// Everything that is known of a node type but its lowering.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeSpec {
+    /// MaterialX's name where it has the node; also the name of the file that defines it.
+    pub name: &'static str,
+    /// Other camps' names, which diagnostics suggest.
+    pub aliases: &'static [&'static str],
+    /// What kind of node.
+    pub category: Category,
+    /// One line for lists.
+    pub summary: &'static str,
+    /// The reference page.
+    pub doc: Doc,
+    /// The inputs, in the order of the reference page.
+    pub inputs: &'static [PortSpec],
+    /// The type of `out`.
+    pub output: OutputType,
+    /// How it acts on classes.
+    pub class: ClassRule,
+    /// A small JSON graph, with the node named as the type is; compiled by the tests.
+    pub example: &'static str,
+}
+
+impl NodeSpec {
+    /// The position of the input of that name.
+    pub fn input(&self, name: &str) -> Option<usize> {
+        self.inputs.iter().position(|port| port.name == name)
+    }
+}

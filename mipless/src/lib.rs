@@ -1,0 +1,1 @@
+//! Self-filtering procedural texture graphs: load, check, edit, compile and evaluate.

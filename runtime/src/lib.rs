@@ -1,0 +1,1 @@
+//! Rendering: views, the CPU renderer, wgpu, truth, error metrics and image files.

@@ -1,0 +1,1 @@
+//! The test suite: agreement, statistics, snapshots, properties, tidy.
