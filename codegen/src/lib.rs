@@ -4,3 +4,7 @@
 
 pub mod float;
 pub mod ir;
+mod lower;
+pub mod moments;
+
+pub use lower::{Bundle, Lower, Method, NodeDef, Options, ParseMethodError, PixelFilter, compile};
