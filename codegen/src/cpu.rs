@@ -159,10 +159,17 @@ impl<F: Float> Evaluator<F> {
                 Input::Integers(all) => Some(all.len()),
                 Input::Float(_) | Input::Integer(_) => None,
             };
-            assert!(count.is_none_or(|count| count == lanes && !is_uniform), "{count:?} of {lanes}");
+            assert!(
+                count.is_none_or(|count| count == lanes && !is_uniform),
+                "{count:?} of {lanes}"
+            );
         }
         self.load(registers, inputs, 0..lanes.min(LANES), true);
-        let mut run = Run { code, runner: self.runner, registers };
+        let mut run = Run {
+            code,
+            runner: self.runner,
+            registers,
+        };
         run.nodes(&code.prologue, None);
         let entry = code.functions.last().expect("a module has an entry");
         for start in (0..lanes).step_by(LANES) {
@@ -184,13 +191,22 @@ impl<F: Float> Evaluator<F> {
         uniform: bool,
     ) {
         let count = batch.len();
-        let parameters = inputs.iter().zip(&self.code.parameters).zip(&self.is_uniform);
+        let parameters = inputs
+            .iter()
+            .zip(&self.code.parameters)
+            .zip(&self.is_uniform);
         for ((input, &(ty, register)), &is_uniform) in parameters {
             if is_uniform != uniform {
                 continue;
             }
             let register = usize::from(register);
-            let word = |x: i32| if ty == Type::Bool { u32::from(x != 0) } else { x as u32 };
+            let word = |x: i32| {
+                if ty == Type::Bool {
+                    u32::from(x != 0)
+                } else {
+                    x as u32
+                }
+            };
             match *input {
                 Input::Floats(all) if ty == Type::F32 => {
                     let to = &mut registers.floats[register].0;
@@ -258,7 +274,12 @@ impl<F: Float> Evaluator<F> {
             |f| f.dv[1],
         ];
         let floats = floats.map(|get| footprints.iter().map(get).collect::<Vec<f32>>());
-        let uniform = self.code.parameters.iter().skip(FOOTPRINT.len()).zip(parameters);
+        let uniform = self
+            .code
+            .parameters
+            .iter()
+            .skip(FOOTPRINT.len())
+            .zip(parameters);
         let inputs: Vec<Input<'_>> = (cells.iter().map(|all| Input::Integers(all)))
             .chain(floats.iter().map(|all| Input::Floats(all)))
             .chain(uniform.map(|(&(ty, _), &x)| match ty {

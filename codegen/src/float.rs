@@ -146,7 +146,11 @@ float_bank!(
 float_bank!(f64, f64::floor, exp_f64, ln_f64, f64::sin, f64::cos);
 
 fn exp_f64(x: f64) -> f64 {
-    x.clamp(f64::from(elementary::EXP_RANGE[0]), f64::from(elementary::EXP_RANGE[1])).exp()
+    x.clamp(
+        f64::from(elementary::EXP_RANGE[0]),
+        f64::from(elementary::EXP_RANGE[1]),
+    )
+    .exp()
 }
 
 fn ln_f64(x: f64) -> f64 {

@@ -42,37 +42,62 @@ impl<F: Float> Registers<F> {
 
     /// Makes at least so many registers.
     pub(super) fn reserve(&mut self, floats: usize, words: usize) {
-        self.floats.resize_with(self.floats.len().max(floats), zeroed);
+        self.floats
+            .resize_with(self.floats.len().max(floats), zeroed);
         self.words.resize_with(self.words.len().max(words), zeroed);
     }
 }
 
 /// The element of the bank that holds a row's type.
 macro_rules! stored {
-    (F, $F:ident) => { $F };
-    ($t:tt, $F:ident) => { u32 };
+    (F, $F:ident) => {
+        $F
+    };
+    ($t:tt, $F:ident) => {
+        u32
+    };
 }
 
 /// A bank's element as a value of a row's type.
 macro_rules! read {
-    (F, $e:expr) => { $e };
-    (i32, $e:expr) => { $e as i32 };
-    (u32, $e:expr) => { $e };
-    (bool, $e:expr) => { $e != 0 };
+    (F, $e:expr) => {
+        $e
+    };
+    (i32, $e:expr) => {
+        $e as i32
+    };
+    (u32, $e:expr) => {
+        $e
+    };
+    (bool, $e:expr) => {
+        $e != 0
+    };
 }
 
 /// A value of a row's type as its bank's element.
 macro_rules! write {
-    (F, $e:expr) => { $e };
-    (i32, $e:expr) => { $e as u32 };
-    (u32, $e:expr) => { $e };
-    (bool, $e:expr) => { u32::from($e) };
+    (F, $e:expr) => {
+        $e
+    };
+    (i32, $e:expr) => {
+        $e as u32
+    };
+    (u32, $e:expr) => {
+        $e
+    };
+    (bool, $e:expr) => {
+        u32::from($e)
+    };
 }
 
 /// The register of a row's type.
 macro_rules! register {
-    (F, $registers:ident, $index:expr) => { &$registers.floats[usize::from($index)].0 };
-    ($t:tt, $registers:ident, $index:expr) => { &$registers.words[usize::from($index)].0 };
+    (F, $registers:ident, $index:expr) => {
+        &$registers.floats[usize::from($index)].0
+    };
+    ($t:tt, $registers:ident, $index:expr) => {
+        &$registers.words[usize::from($index)].0
+    };
 }
 
 /// Runs a loop over the spare register of a row's result type, then puts it in place.
@@ -80,12 +105,18 @@ macro_rules! into_destination {
     (F, $registers:ident, $step:ident, |$out:ident| $run:expr) => {{
         let $out = &mut $registers.spare_float.0;
         $run;
-        swap(&mut $registers.spare_float, &mut $registers.floats[usize::from($step.destination)]);
+        swap(
+            &mut $registers.spare_float,
+            &mut $registers.floats[usize::from($step.destination)],
+        );
     }};
     ($t:tt, $registers:ident, $step:ident, |$out:ident| $run:expr) => {{
         let $out = &mut $registers.spare_word.0;
         $run;
-        swap(&mut $registers.spare_word, &mut $registers.words[usize::from($step.destination)]);
+        swap(
+            &mut $registers.spare_word,
+            &mut $registers.words[usize::from($step.destination)],
+        );
     }};
 }
 
@@ -162,7 +193,11 @@ impl Level {
 
     /// The highest level that this machine has.
     pub fn detect() -> Self {
-        Self::ALL.into_iter().rev().find(|level| level.is_available()).unwrap_or(Self::Baseline)
+        Self::ALL
+            .into_iter()
+            .rev()
+            .find(|level| level.is_available())
+            .unwrap_or(Self::Baseline)
     }
 
     /// Whether this machine has the level.

@@ -41,7 +41,11 @@ fn parameter_places(function: &Function, id: FunctionId) -> Vec<Place> {
     let place = |ty| {
         let index = next[bank(ty)];
         next[bank(ty)] += 1;
-        Place { bank: bank(ty), frame: Frame::Function(id), index }
+        Place {
+            bank: bank(ty),
+            frame: Frame::Function(id),
+            index,
+        }
     };
     function.params.iter().map(|p| p.ty).map(place).collect()
 }
@@ -61,7 +65,11 @@ impl Constants {
             all.push(bits);
             all.len() as u16 - 1
         });
-        Place { bank, frame: Frame::Constants, index }
+        Place {
+            bank,
+            frame: Frame::Constants,
+            index,
+        }
     }
 }
 
@@ -128,11 +136,16 @@ impl<F: Float> Code<F> {
         Self {
             functions: compiled.iter().map(|f| renamed(&f.nodes)).collect(),
             prologue: renamed(&own.prologue),
-            parameters: (entry.params.iter().zip(places)).map(|(p, at)| (p.ty, register(at))).collect(),
+            parameters: (entry.params.iter().zip(places))
+                .map(|(p, at)| (p.ty, register(at)))
+                .collect(),
             results: (entry.results.iter().zip(&own.results))
                 .map(|(&(_, value), &at)| (entry.ty(value), register(at)))
                 .collect(),
-            floats: constants.bits[0].iter().map(|&b| F::from_f32(f32::from_bits(b))).collect(),
+            floats: constants.bits[0]
+                .iter()
+                .map(|&b| F::from_f32(f32::from_bits(b)))
+                .collect(),
             words: constants.bits[1].clone(),
             size,
             tables: (module.tables.iter())
@@ -166,7 +179,11 @@ fn frame_starts(
         let end = [0, 1].map(|bank| starts[index][bank] + usize::from(sizes[index][bank]));
         size = [0, 1].map(|bank| size[bank].max(end[bank]));
         for inst in &function.insts {
-            if let Inst::Call(callee, _) | Inst::Fold { function: callee, .. } = inst {
+            if let Inst::Call(callee, _)
+            | Inst::Fold {
+                function: callee, ..
+            } = inst
+            {
                 let start = &mut starts[callee.index()];
                 *start = [0, 1].map(|bank| start[bank].max(end[bank]));
             }

@@ -27,15 +27,27 @@ impl<F: Float> Number<F> {
 }
 
 macro_rules! operand {
-    (F, $n:expr) => { $n.float() };
-    (i32, $n:expr) => { $n.word() as i32 };
-    (u32, $n:expr) => { $n.word() };
-    (bool, $n:expr) => { $n.word() != 0 };
+    (F, $n:expr) => {
+        $n.float()
+    };
+    (i32, $n:expr) => {
+        $n.word() as i32
+    };
+    (u32, $n:expr) => {
+        $n.word()
+    };
+    (bool, $n:expr) => {
+        $n.word() != 0
+    };
 }
 
 macro_rules! number {
-    (F, $e:expr) => { Number::Float($e) };
-    ($t:tt, $e:expr) => { Number::Word($e as u32) };
+    (F, $e:expr) => {
+        Number::Float($e)
+    };
+    ($t:tt, $e:expr) => {
+        Number::Word($e as u32)
+    };
 }
 
 macro_rules! define_apply {
@@ -76,7 +88,12 @@ fn interpret<F: Float>(module: &Module, id: FunctionId, arguments: &[Number<F>])
                 vec![Number::Float(F::from_f32(data[index]))]
             }
             Inst::Call(callee, arguments) => interpret(module, *callee, &all(arguments)),
-            Inst::Fold { function, count, init, captures } => {
+            Inst::Fold {
+                function,
+                count,
+                init,
+                captures,
+            } => {
                 let mut state = all(init);
                 for turn in 0..get(count).word() {
                     let mut arguments = vec![Number::Word(turn)];
@@ -88,7 +105,11 @@ fn interpret<F: Float>(module: &Module, id: FunctionId, arguments: &[Number<F>])
             Inst::Result(of, i) => vec![values[of.index()][*i as usize]],
         });
     }
-    function.results.iter().map(|(_, v)| values[v.index()][0]).collect()
+    function
+        .results
+        .iter()
+        .map(|(_, v)| values[v.index()][0])
+        .collect()
 }
 
 /// Numbers for the parameters of the entry: the bits of one lane after the other.
@@ -101,11 +122,21 @@ impl Lanes {
         self.columns[0].1.len()
     }
 
-    fn evaluate<F: Float>(&self, evaluator: &Evaluator<F>, scratch: &mut Scratch<F>) -> Vec<Vec<F>> {
-        let floats: Vec<Vec<f32>> =
-            self.columns.iter().map(|(_, c)| c.iter().map(|&b| f32::from_bits(b)).collect()).collect();
-        let words: Vec<Vec<i32>> =
-            self.columns.iter().map(|(_, c)| c.iter().map(|&b| b as i32).collect()).collect();
+    fn evaluate<F: Float>(
+        &self,
+        evaluator: &Evaluator<F>,
+        scratch: &mut Scratch<F>,
+    ) -> Vec<Vec<F>> {
+        let floats: Vec<Vec<f32>> = self
+            .columns
+            .iter()
+            .map(|(_, c)| c.iter().map(|&b| f32::from_bits(b)).collect())
+            .collect();
+        let words: Vec<Vec<i32>> = self
+            .columns
+            .iter()
+            .map(|(_, c)| c.iter().map(|&b| b as i32).collect())
+            .collect();
         let inputs: Vec<Input<'_>> = (self.columns.iter().enumerate())
             .map(|(i, (ty, _))| match (*ty, evaluator.is_uniform[i]) {
                 (Type::F32, false) => Input::Floats(&floats[i]),
@@ -132,7 +163,9 @@ impl Lanes {
                 })
                 .collect();
             let results = interpret(module, id, &arguments);
-            for ((output, result), (_, value)) in outputs.iter_mut().zip(results).zip(&entry.results) {
+            for ((output, result), (_, value)) in
+                outputs.iter_mut().zip(results).zip(&entry.results)
+            {
                 output.push(match (result, entry.ty(*value)) {
                     (Number::Float(x), _) => x,
                     (Number::Word(x), Type::I32) => F::from_i32(x as i32),
@@ -146,8 +179,17 @@ impl Lanes {
 
 /// Numbers as bits, all that are not a number alike.
 fn bits<F: Float>(numbers: &[Vec<F>]) -> Vec<Vec<u64>> {
-    let bits = |x: &F| if x.to_f64().is_nan() { u64::MAX } else { x.to_f64().to_bits() };
-    numbers.iter().map(|column| column.iter().map(bits).collect()).collect()
+    let bits = |x: &F| {
+        if x.to_f64().is_nan() {
+            u64::MAX
+        } else {
+            x.to_f64().to_bits()
+        }
+    };
+    numbers
+        .iter()
+        .map(|column| column.iter().map(bits).collect())
+        .collect()
 }
 
 fn assert_bank<F: Float>(module: &Module, lanes: &Lanes, uniform: impl Fn(usize) -> bool + Copy) {
@@ -169,7 +211,20 @@ fn assert_interpreted(module: &Module, lanes: &Lanes, uniform: impl Fn(usize) ->
 /// Some bits of a type: the edges first, then a walk over all magnitudes.
 fn sample(ty: Type, i: u32) -> u32 {
     const EDGES: [f32; 14] = [
-        0.0, -0.0, 1.0, -1.0, 0.5, 2.5, -2.5, 1e-40, 3e9, -3e9, 1e30, 88.7, -103.0, f32::MAX,
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.5,
+        2.5,
+        -2.5,
+        1e-40,
+        3e9,
+        -3e9,
+        1e30,
+        88.7,
+        -103.0,
+        f32::MAX,
     ];
     let mixed = (i.wrapping_mul(0x9e37_79b9) ^ (i >> 3)).wrapping_mul(0x85eb_ca6b);
     match ty {
@@ -193,16 +248,26 @@ fn every_op_is_the_interpreters_at_every_level() {
         let mut module = Module::default();
         let mut b = Builder::new("op", "One op.");
         let types = op.info().operands;
-        let operands: Vec<Value> =
-            types.iter().enumerate().map(|(i, &ty)| b.param(format!("p{i}"), ty)).collect();
+        let operands: Vec<Value> = types
+            .iter()
+            .enumerate()
+            .map(|(i, &ty)| b.param(format!("p{i}"), ty))
+            .collect();
         let value = b.op(op, &operands);
         b.result("out", value);
         b.finish(&mut module);
         let column = |(i, &ty): (usize, &Type)| {
             let stride = [1, 7, 11][i];
-            (ty, (0..1000).map(|lane| sample(ty, lane * stride % 331)).collect())
+            (
+                ty,
+                (0..1000)
+                    .map(|lane| sample(ty, lane * stride % 331))
+                    .collect(),
+            )
         };
-        let lanes = Lanes { columns: types.iter().enumerate().map(column).collect() };
+        let lanes = Lanes {
+            columns: types.iter().enumerate().map(column).collect(),
+        };
         assert_interpreted(&module, &lanes, |_| false);
     }
 }
@@ -260,12 +325,22 @@ fn nested(module: &mut Module) {
 fn nested_folds_take_each_lanes_own_turns() {
     let mut module = Module::default();
     nested(&mut module);
-    let counts: [fn(u32) -> u32; 5] =
-        [|lane| lane * 7 % 6, |_| 0, |_| 4, |lane| u32::from(lane == 200), |lane| lane / 150];
+    let counts: [fn(u32) -> u32; 5] = [
+        |lane| lane * 7 % 6,
+        |_| 0,
+        |_| 4,
+        |lane| u32::from(lane == 200),
+        |lane| lane / 150,
+    ];
     for count in counts {
         let columns = vec![
             (Type::U32, (0..333).map(count).collect()),
-            (Type::F32, (0..333).map(|lane| (lane as f32 * 0.37 - 20.0).to_bits()).collect()),
+            (
+                Type::F32,
+                (0..333)
+                    .map(|lane| (lane as f32 * 0.37 - 20.0).to_bits())
+                    .collect(),
+            ),
         ];
         assert_interpreted(&module, &Lanes { columns }, |_| false);
     }
@@ -278,13 +353,19 @@ fn bits_depend_neither_on_the_cut_nor_on_what_is_uniform() {
     let lanes = |count| Lanes {
         columns: vec![
             (Type::U32, vec![5; count]),
-            (Type::F32, (0..count).map(|lane| (lane as f32).to_bits()).collect()),
+            (
+                Type::F32,
+                (0..count).map(|lane| (lane as f32).to_bits()).collect(),
+            ),
         ],
     };
     let all = lanes(300).evaluate(&Evaluator::<f32>::new(&module), &mut Scratch::new());
     for count in [1, 127, 128, 129] {
         let found = lanes(count).evaluate(&Evaluator::<f32>::new(&module), &mut Scratch::new());
-        assert!(found.iter().zip(&all).all(|(f, a)| f[..] == a[..count]), "{count}");
+        assert!(
+            found.iter().zip(&all).all(|(f, a)| f[..] == a[..count]),
+            "{count}"
+        );
     }
     assert_interpreted(&module, &lanes(300), |parameter| parameter == 0);
     let none = lanes(300).evaluate(&Evaluator::<f32>::new(&module), &mut Scratch::new());
@@ -312,10 +393,22 @@ fn a_program_reads_its_footprint_and_parameters_in_order() {
         moments: false,
     };
     let program = Program { module, interface };
-    let footprint = Footprint { cell: [-3, 4], uv: [0.5, 0.25], du: [0.1, 0.2], dv: [0.3, 0.4] };
-    let outputs = eval_program::<f32>(&program, &[Footprint::default(), footprint], &[2.5, -7.0, 1.0]);
+    let footprint = Footprint {
+        cell: [-3, 4],
+        uv: [0.5, 0.25],
+        du: [0.1, 0.2],
+        dv: [0.3, 0.4],
+    };
+    let outputs = eval_program::<f32>(
+        &program,
+        &[Footprint::default(), footprint],
+        &[2.5, -7.0, 1.0],
+    );
     let second: Vec<f32> = outputs.iter().map(|column| column[1]).collect();
-    assert_eq!(second, [-3.0, 4.0, 0.5, 0.25, 0.1, 0.2, 0.3, 0.4, 2.5, -7.0, 1.0]);
+    assert_eq!(
+        second,
+        [-3.0, 4.0, 0.5, 0.25, 0.1, 0.2, 0.3, 0.4, 2.5, -7.0, 1.0]
+    );
 }
 
 #[test]
@@ -336,21 +429,32 @@ fn grow(b: &mut Builder, values: &mut Vec<Value>, callees: &[Callee], genes: &[[
         let choice = usize::from(what) % (rows + 12);
         if let Some(&op) = Op::ALL.get(choice) {
             let types = op.info().operands;
-            let operands: Vec<Value> =
-                types.iter().zip([x, y, z]).map(|(&ty, gene)| pick(b, ty, gene)).collect();
+            let operands: Vec<Value> = types
+                .iter()
+                .zip([x, y, z])
+                .map(|(&ty, gene)| pick(b, ty, gene))
+                .collect();
             values.push(b.op(op, &operands));
         } else if choice < rows + 6 {
             let [p, q, r] = [x, y, z].map(|gene| pick(b, Type::F32, gene));
             let product = b.mul(p, q);
-            values.push(if what % 2 == 0 { b.sub(r, product) } else { b.sub(product, r) });
+            values.push(if what % 2 == 0 {
+                b.sub(r, product)
+            } else {
+                b.sub(product, r)
+            });
         } else if choice < rows + 8 || callees.is_empty() {
             let index = pick(b, Type::U32, x);
             values.push(b.load(0, index));
         } else {
             let callee = &callees[usize::from(x) % callees.len()];
             let gene = |i: usize| y.wrapping_mul(31).wrapping_add(z.wrapping_mul(i as u8));
-            let arguments: Vec<Value> =
-                callee.types.iter().enumerate().map(|(i, &ty)| pick(b, ty, gene(i))).collect();
+            let arguments: Vec<Value> = callee
+                .types
+                .iter()
+                .enumerate()
+                .map(|(i, &ty)| pick(b, ty, gene(i)))
+                .collect();
             if choice < rows + 10 {
                 values.extend(b.call(&callee.function, &arguments));
             } else {
@@ -385,8 +489,11 @@ fn generate(functions: &[Vec<[u8; 4]>]) -> Module {
     let mut callees: Vec<Callee> = Vec::new();
     for (f, genes) in functions.iter().enumerate() {
         let mut b = Builder::new(format!("f{f}"), "Generated.");
-        let mut values: Vec<Value> =
-            SHAPE.iter().enumerate().map(|(i, &ty)| b.param(format!("p{i}"), ty)).collect();
+        let mut values: Vec<Value> = SHAPE
+            .iter()
+            .enumerate()
+            .map(|(i, &ty)| b.param(format!("p{i}"), ty))
+            .collect();
         for x in [1.0, -0.75] {
             values.push(b.f32(x));
         }
@@ -397,10 +504,16 @@ fn generate(functions: &[Vec<[u8; 4]>]) -> Module {
             // Mostly late values; sometimes parameters and constants.
             let gene = genes.get(i).map_or(0, |g| usize::from(g[3]));
             let back = if gene % 4 == 0 { gene / 4 } else { gene % 3 };
-            b.result(format!("r{i}"), of_type[of_type.len() - 1 - back % of_type.len()]);
+            b.result(
+                format!("r{i}"),
+                of_type[of_type.len() - 1 - back % of_type.len()],
+            );
         }
         let function = b.finish(&mut module);
-        callees.push(Callee { function, types: SHAPE.to_vec() });
+        callees.push(Callee {
+            function,
+            types: SHAPE.to_vec(),
+        });
     }
     module
 }

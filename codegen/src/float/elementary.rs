@@ -141,12 +141,29 @@ mod tests {
 
     #[test]
     fn exp_is_within_2_ulp_and_finite_everywhere() {
-        let error = largest_error(grid(-87.0, 88.0).chain(grid(-1.0, 1.0)), Float::exp, f64::exp, ulp);
+        let error = largest_error(
+            grid(-87.0, 88.0).chain(grid(-1.0, 1.0)),
+            Float::exp,
+            f64::exp,
+            ulp,
+        );
         assert!(error <= 2.0, "{error} ulp");
-        for x in [-f32::INFINITY, f32::MIN, -87.5, -88.0, 88.5, 1000.0, f32::MAX, f32::INFINITY] {
+        for x in [
+            -f32::INFINITY,
+            f32::MIN,
+            -87.5,
+            -88.0,
+            88.5,
+            1000.0,
+            f32::MAX,
+            f32::INFINITY,
+        ] {
             assert!(Float::exp(x).is_normal(), "{x}");
             let oracle = Float::exp(f64::from(x));
-            assert!((f64::from(Float::exp(x)) - oracle).abs() <= 2.0 * ulp(oracle), "{x}");
+            assert!(
+                (f64::from(Float::exp(x)) - oracle).abs() <= 2.0 * ulp(oracle),
+                "{x}"
+            );
         }
     }
 
@@ -170,8 +187,14 @@ mod tests {
         assert!(error <= 2e-7, "sine: {error}");
         let error = largest_error(operands(), Float::cos, f64::cos, |_| 1.0);
         assert!(error <= 2e-7, "cosine: {error}");
-        for x in (0..f32::INFINITY.to_bits()).step_by(9973).map(f32::from_bits) {
-            assert!(Float::sin(x).abs() <= 1.0 && Float::cos(x).abs() <= 1.0, "{x}");
+        for x in (0..f32::INFINITY.to_bits())
+            .step_by(9973)
+            .map(f32::from_bits)
+        {
+            assert!(
+                Float::sin(x).abs() <= 1.0 && Float::cos(x).abs() <= 1.0,
+                "{x}"
+            );
             if x < 1e6 {
                 assert_eq!(Float::sin(-x), -Float::sin(x), "{x}");
                 assert_eq!(Float::cos(-x), Float::cos(x), "{x}");
@@ -182,8 +205,15 @@ mod tests {
 
     #[test]
     fn floor_has_the_bits_of_the_library() {
-        for x in (0..=u32::MAX).step_by(4999).map(f32::from_bits).chain(grid(-9.0, 9.0)) {
-            assert!(x.is_nan() || Float::floor(x).to_bits() == x.floor().to_bits(), "{x}");
+        for x in (0..=u32::MAX)
+            .step_by(4999)
+            .map(f32::from_bits)
+            .chain(grid(-9.0, 9.0))
+        {
+            assert!(
+                x.is_nan() || Float::floor(x).to_bits() == x.floor().to_bits(),
+                "{x}"
+            );
         }
     }
 }

@@ -195,11 +195,20 @@ impl<'a> Scan<'a> {
                 let index_place = self.place(*index);
                 self.release(&[*index], position);
                 let destination = self.allocate(value);
-                let table = Place { bank: 0, frame: Frame::Constants, index: table };
+                let table = Place {
+                    bank: 0,
+                    frame: Frame::Constants,
+                    index: table,
+                };
                 self.step(Code::Load, destination, [index_place, table, index_place]);
             }
             Inst::Call(callee, arguments) => self.define_call(value, *callee, arguments, position),
-            Inst::Fold { function, count, init, captures } => {
+            Inst::Fold {
+                function,
+                count,
+                init,
+                captures,
+            } => {
                 self.define_fold(value, *function, *count, [init, captures], position);
             }
         }
@@ -209,7 +218,11 @@ impl<'a> Scan<'a> {
         let [a, b, _] = operands;
         let (code, operands): (Code, Vec<Value>) = match op {
             Op::Add | Op::Sub if self.merged[a.index()] || self.merged[b.index()] => {
-                let (product, other) = if self.merged[a.index()] { (a, b) } else { (b, a) };
+                let (product, other) = if self.merged[a.index()] {
+                    (a, b)
+                } else {
+                    (b, a)
+                };
                 let code = match op {
                     Op::Add => Code::MulAdd,
                     _ if product == a => Code::MulSub,
@@ -229,7 +242,13 @@ impl<'a> Scan<'a> {
         self.step(code, destination, [place(0), place(1), place(2)]);
     }
 
-    fn define_call(&mut self, value: Value, callee: FunctionId, arguments: &[Value], position: usize) {
+    fn define_call(
+        &mut self,
+        value: Value,
+        callee: FunctionId,
+        arguments: &[Value],
+        position: usize,
+    ) {
         let parameters = parameter_places(self.module.function(callee), callee);
         self.pass(arguments, &parameters, &[], position);
         self.release(arguments, position);
@@ -268,7 +287,11 @@ impl<'a> Scan<'a> {
         let update = take(&mut self.block);
         for (&source, &to) in sources.iter().zip(state) {
             if source != to {
-                let code = if to.bank == 0 { Code::Select } else { Code::SelectU };
+                let code = if to.bank == 0 {
+                    Code::Select
+                } else {
+                    Code::SelectU
+                };
                 self.step(code, to, [mask, source, to]);
             }
         }
@@ -297,7 +320,13 @@ impl<'a> Scan<'a> {
 
     /// Moves arguments into the parameters of a callee. `later` are arguments that another pass at
     /// the same position moves.
-    fn pass(&mut self, arguments: &[Value], parameters: &[Place], later: &[Value], position: usize) {
+    fn pass(
+        &mut self,
+        arguments: &[Value],
+        parameters: &[Place],
+        later: &[Value],
+        position: usize,
+    ) {
         for (i, (&argument, &to)) in arguments.iter().zip(parameters).enumerate() {
             let again = arguments[i + 1..].contains(&argument)
                 || later.contains(&argument)
@@ -354,7 +383,11 @@ impl<'a> Scan<'a> {
     }
 
     fn step(&mut self, code: Code, destination: Place, operands: [Place; 3]) {
-        self.block.push(Step { code, destination, operands });
+        self.block.push(Step {
+            code,
+            destination,
+            operands,
+        });
     }
 
     fn flush(&mut self) {
@@ -374,7 +407,11 @@ impl<'a> Scan<'a> {
 
     fn fresh(&mut self, ty: Type) -> Place {
         let bank = bank(ty);
-        Place { bank, frame: Frame::Function(self.id), index: self.pools[bank].take() }
+        Place {
+            bank,
+            frame: Frame::Function(self.id),
+            index: self.pools[bank].take(),
+        }
     }
 
     fn allocate(&mut self, value: Value) -> Place {
