@@ -72,7 +72,7 @@ fn place(sheet: &mut Image, image: &Image, left: usize, top: usize) {
                 let from = row * width + column;
                 let to = (top + row) * stride + left + column;
                 let value = source.map_or(0.0, |channel| channel[from]);
-                let share = alpha.map_or(1.0, |alpha| alpha[from].max(0.0).min(1.0));
+                let share = alpha.map_or(1.0, |alpha| alpha[from].clamp(0.0, 1.0));
                 target[to] = share * value + (1.0 - share) * target[to];
             }
         }

@@ -137,9 +137,9 @@ fn png(image: &Image, bits: Bits) -> ::image::ImageResult<Vec<u8>> {
     }
     let number = |channel: usize, pixel: usize| {
         let x = channels[channel][pixel];
-        // The maximum of a NaN and 0 is 0.
+        // A NaN stays one, and converts to the integer 0.
         if channel == 3 {
-            x.max(0.0).min(1.0)
+            x.clamp(0.0, 1.0)
         } else {
             srgb_from_linear(x)
         }

@@ -13,7 +13,10 @@
 
 pub mod compare;
 pub mod cpu;
+pub mod device;
 pub mod footprint;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod image;
 pub mod image_file;
 pub mod job;

@@ -1,10 +1,9 @@
 //! The sRGB transfer function (IEC 61966-2-1), for numbers from 0 to 1.
 
-/// The sRGB number of a linear one. Numbers outside 0 to 1 are clamped; a number that is not one
-/// becomes 0.
+/// The sRGB number of a linear one. Numbers outside 0 to 1 are clamped; a NaN stays
+/// one.
 pub fn srgb_from_linear(linear: f32) -> f32 {
-    // The maximum of a NaN and 0 is 0.
-    let x = f64::from(linear.max(0.0).min(1.0));
+    let x = f64::from(linear.clamp(0.0, 1.0));
     // In f64, so that white is exactly 1 after rounding.
     (if x <= 0.003_130_8 {
         12.92 * x
@@ -33,6 +32,10 @@ mod tests {
             let back = srgb_from_linear(linear_from_srgb(srgb));
             assert!((back - srgb).abs() < 1e-5, "{i}: {back}");
         }
-        assert_eq!([f32::NAN, -1.0, 2.0].map(srgb_from_linear), [0.0, 0.0, 1.0]);
+        assert_eq!(
+            [-1.0, 0.0, 1.0, 2.0].map(srgb_from_linear),
+            [0.0, 0.0, 1.0, 1.0]
+        );
+        assert!(srgb_from_linear(f32::NAN).is_nan());
     }
 }
