@@ -2,5 +2,6 @@
 //!
 //! This crate knows no node by name: it receives node definitions as a slice.
 
+pub mod cpu;
 pub mod float;
 pub mod ir;
