@@ -4,3 +4,5 @@
 
 pub mod float;
 pub mod ir;
+pub mod target;
+pub mod wgsl;
