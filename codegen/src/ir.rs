@@ -25,6 +25,8 @@
 
 mod build;
 mod op;
+#[cfg(test)]
+pub(crate) mod random;
 
 pub use build::{Builder, FunctionRef};
 pub use op::{Op, OpInfo};

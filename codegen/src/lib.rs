@@ -5,3 +5,5 @@
 pub mod cpu;
 pub mod float;
 pub mod ir;
+pub mod target;
+pub mod wgsl;
