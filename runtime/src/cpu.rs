@@ -6,34 +6,16 @@
 
 use std::fmt;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 
-use mipless_codegen::ir::Interface;
+use mipless_codegen::cpu::{Evaluator, Footprint, Scratch};
+use mipless_codegen::float::Float;
+use mipless_codegen::ir::{Interface, Program};
 use rayon::prelude::*;
 
-use crate::footprint::Footprint;
 use crate::image::{Image, result_names};
 use crate::job::{Cancelled, Job, Tally};
 use crate::view::{Size, View};
-
-/// A compiled texture with its parameters, ready to be evaluated over lanes of footprints.
-pub trait Evaluate: Sync {
-    /// The float bank: f32, or f64 for the oracle.
-    type Number: Copy + Default + Send + Sync;
-    /// What one thread needs besides; it carries nothing from one call to the next.
-    type Scratch;
-
-    /// Memory for one thread.
-    fn scratch(&self) -> Self::Scratch;
-
-    /// Evaluates all footprints: result r of footprint i goes to `results[r][i]`. Every slice of
-    /// `results` is as long as `footprints`.
-    fn evaluate(
-        &self,
-        scratch: &mut Self::Scratch,
-        footprints: &[Footprint],
-        results: &mut [&mut [Self::Number]],
-    );
-}
 
 /// Why a CPU render has no image.
 #[derive(Debug)]
@@ -65,116 +47,139 @@ impl From<Cancelled> for CpuError {
 /// picture among many cores and to be stopped soon.
 const TILE: usize = 1024;
 
-/// Renders all results of a program over a view, with all cores or with `threads` threads. Pixels
-/// of the background are 0 in every channel; [`View::present`] puts the background there.
-///
-/// The channels are the results in the order of [`crate::image::outputs`].
-///
-/// # Errors
-/// If the job is cancelled, or if the threads cannot be started.
-pub fn render<E: Evaluate>(
-    evaluator: &E,
-    interface: &Interface,
-    view: &View,
-    size: Size,
-    threads: Option<NonZeroUsize>,
-    job: Job<'_>,
-) -> Result<Image<E::Number>, CpuError> {
-    let Some(threads) = threads else {
-        return Ok(tiles(evaluator, interface, view, size, job)?);
-    };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.get())
-        .build()
-        .map_err(CpuError::Threads)?;
-    Ok(pool.install(|| tiles(evaluator, interface, view, size, job))?)
+/// A program compiled for the CPU, with its parameters. `F` is f32, or f64 for the oracle.
+#[derive(Debug)]
+pub struct Renderer<F> {
+    evaluator: Evaluator<F>,
+    interface: Interface,
+    parameters: Vec<f32>,
 }
 
-fn tiles<E: Evaluate>(
-    evaluator: &E,
-    interface: &Interface,
-    view: &View,
-    size: Size,
-    job: Job<'_>,
-) -> Result<Image<E::Number>, Cancelled> {
-    let names = result_names(interface);
-    let mut channels = vec![vec![E::Number::default(); size.pixels()]; names.len()];
-    let mut tiles: Vec<Vec<&mut [E::Number]>> = Vec::new();
-    tiles.resize_with(size.pixels().div_ceil(TILE), || {
-        Vec::with_capacity(names.len())
-    });
-    for channel in &mut channels {
-        for (tile, part) in tiles.iter_mut().zip(channel.chunks_mut(TILE)) {
-            tile.push(part);
+impl<F: Float> Renderer<F> {
+    /// Compiles a program, with its default parameters.
+    pub fn new(program: &Program) -> Self {
+        let interface = program.interface.clone();
+        let parameters = interface
+            .parameters
+            .iter()
+            .flat_map(|p| p.default.clone())
+            .collect();
+        Self {
+            evaluator: Evaluator::of_program(program),
+            interface,
+            parameters,
         }
     }
-    let tally = Tally::new(job, size);
-    tiles.into_par_iter().enumerate().try_for_each_init(
-        || Worker::new(evaluator, names.len()),
-        |worker, (tile, mut results)| {
-            tally.proceed()?;
-            let start = tile * TILE;
-            let end = size.pixels().min(start + TILE);
-            worker.tile(view, size, start..end, &mut results);
-            tally.add(end - start);
-            Ok(())
-        },
-    )?;
-    Ok(Image::new(size, &names, channels))
+
+    /// Sets the parameters: one number a component, in the order of the program's interface.
+    ///
+    /// # Panics
+    /// If there are not as many numbers as components.
+    pub fn set_parameters(&mut self, numbers: &[f32]) {
+        assert_eq!(
+            numbers.len(),
+            self.parameters.len(),
+            "numbers for the parameters"
+        );
+        self.parameters.copy_from_slice(numbers);
+    }
+
+    /// Renders all results over a view, with all cores or with `threads` threads. Pixels of the
+    /// background are 0 in every channel; [`View::present`] puts the background there.
+    ///
+    /// The channels are the results in the order of [`crate::image::outputs`].
+    ///
+    /// # Errors
+    /// If the job is cancelled, or if the threads cannot be started.
+    pub fn render(
+        &self,
+        view: &View,
+        size: Size,
+        threads: Option<NonZeroUsize>,
+        job: Job<'_>,
+    ) -> Result<Image<F>, CpuError> {
+        let Some(threads) = threads else {
+            return Ok(self.tiles(view, size, job)?);
+        };
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build()
+            .map_err(CpuError::Threads)?;
+        Ok(pool.install(|| self.tiles(view, size, job))?)
+    }
+
+    fn tiles(&self, view: &View, size: Size, job: Job<'_>) -> Result<Image<F>, Cancelled> {
+        let names = result_names(&self.interface);
+        let mut channels = vec![vec![F::default(); size.pixels()]; names.len()];
+        let mut tiles: Vec<Vec<&mut [F]>> = Vec::new();
+        tiles.resize_with(size.pixels().div_ceil(TILE), || {
+            Vec::with_capacity(names.len())
+        });
+        for channel in &mut channels {
+            for (tile, part) in tiles.iter_mut().zip(channel.chunks_mut(TILE)) {
+                tile.push(part);
+            }
+        }
+        let tally = Tally::new(job, size);
+        tiles.into_par_iter().enumerate().try_for_each_init(
+            || Worker::new(self),
+            |worker, (tile, mut results)| {
+                tally.proceed()?;
+                let start = tile * TILE;
+                let end = size.pixels().min(start + TILE);
+                worker.tile(view, size, start..end, &mut results);
+                tally.add(end - start);
+                Ok(())
+            },
+        )?;
+        Ok(Image::new(size, &names, channels))
+    }
 }
 
 /// What one thread holds.
-struct Worker<'a, E: Evaluate> {
-    evaluator: &'a E,
-    scratch: E::Scratch,
+struct Worker<'a, F> {
+    renderer: &'a Renderer<F>,
+    scratch: Scratch<F>,
     footprints: Vec<Footprint>,
-    covered: Vec<usize>,
-    packed: Vec<Vec<E::Number>>,
+    /// Where in the tile each of the footprints belongs.
+    lanes: Vec<usize>,
+    outputs: Vec<Vec<F>>,
 }
 
-impl<'a, E: Evaluate> Worker<'a, E> {
-    fn new(evaluator: &'a E, results: usize) -> Self {
+impl<'a, F: Float> Worker<'a, F> {
+    fn new(renderer: &'a Renderer<F>) -> Self {
         Self {
-            evaluator,
-            scratch: evaluator.scratch(),
+            renderer,
+            scratch: Scratch::new(),
             footprints: Vec::with_capacity(TILE),
-            covered: Vec::with_capacity(TILE),
-            packed: vec![vec![E::Number::default(); TILE]; results],
+            lanes: Vec::with_capacity(TILE),
+            outputs: Vec::new(),
         }
     }
 
     /// Evaluates the pixels of a tile that are not background.
-    fn tile(
-        &mut self,
-        view: &View,
-        size: Size,
-        pixels: std::ops::Range<usize>,
-        results: &mut [&mut [E::Number]],
-    ) {
+    fn tile(&mut self, view: &View, size: Size, pixels: Range<usize>, results: &mut [&mut [F]]) {
         self.footprints.clear();
-        self.covered.clear();
-        let whole = pixels.len();
+        self.lanes.clear();
         for (lane, index) in pixels.enumerate() {
             if let Some(footprint) = view.footprint(size, index) {
                 self.footprints.push(footprint);
-                self.covered.push(lane);
+                self.lanes.push(lane);
             }
-        }
-        if self.footprints.len() == whole {
-            self.evaluator
-                .evaluate(&mut self.scratch, &self.footprints, results);
-            return;
         }
         if self.footprints.is_empty() {
             return;
         }
-        let count = self.footprints.len();
-        let mut packed: Vec<_> = self.packed.iter_mut().map(|p| &mut p[..count]).collect();
-        self.evaluator
-            .evaluate(&mut self.scratch, &self.footprints, &mut packed);
-        for (channel, packed) in results.iter_mut().zip(&packed) {
-            for (&lane, &value) in self.covered.iter().zip(packed.iter()) {
-                channel[lane] = value;
+        let Renderer {
+            evaluator,
+            parameters,
+            ..
+        } = self.renderer;
+        let (scratch, outputs) = (&mut self.scratch, &mut self.outputs);
+        evaluator.evaluate_footprints(scratch, &self.footprints, parameters, outputs);
+        for (result, output) in results.iter_mut().zip(outputs) {
+            for (&lane, &value) in self.lanes.iter().zip(output.iter()) {
+                result[lane] = value;
             }
         }
     }
@@ -185,70 +190,65 @@ mod tests {
     use std::sync::Mutex;
     use std::sync::atomic::AtomicBool;
 
-    use mipless_codegen::ir::Port;
+    use mipless_codegen::ir::{Builder, FOOTPRINT, Module, Port};
     use mipless_graph::Type;
 
     use super::*;
     use crate::view::Sphere;
 
-    /// The position and the size of the footprint, which depend on every lane being in its place.
-    struct Position;
-
-    impl Evaluate for Position {
-        type Number = f64;
-        type Scratch = ();
-
-        fn scratch(&self) {}
-
-        fn evaluate(&self, (): &mut (), footprints: &[Footprint], results: &mut [&mut [f64]]) {
-            assert!(results.iter().all(|r| r.len() == footprints.len()));
-            for (i, f) in footprints.iter().enumerate() {
-                results[0][i] = f64::from(f.cell[0]) + f64::from(f.uv[0]);
-                results[1][i] = f64::from(f.cell[1]) + f64::from(f.uv[1]);
-            }
+    /// The position times a parameter.
+    fn position() -> Program {
+        let mut builder = Builder::new("position", "The position times a parameter.");
+        let footprint = FOOTPRINT.map(|(name, ty)| builder.param(name, ty));
+        let scale = builder.param_f32("scale");
+        for axis in 0..2 {
+            let cell = builder.float_i(footprint[axis]);
+            let at = builder.add(cell, footprint[axis + 2]);
+            let scaled = builder.mul(at, scale);
+            builder.result(["x", "y"][axis], scaled);
         }
-    }
-
-    fn interface() -> Interface {
-        let port = Port {
-            name: "uv".into(),
-            ty: Type::Vector2,
-            default: Vec::new(),
+        let mut module = Module::default();
+        builder.finish(&mut module);
+        let port = |name: &str, ty, default| Port {
+            name: name.into(),
+            ty,
+            default,
         };
-        Interface {
+        let interface = Interface {
             name: "position".into(),
-            parameters: Vec::new(),
-            outputs: vec![port],
+            parameters: vec![port("scale", Type::Float, vec![1.0])],
+            outputs: vec![port("uv", Type::Vector2, Vec::new())],
             moments: false,
-        }
+        };
+        Program { module, interface }
     }
 
     #[test]
     fn any_number_of_threads_gives_the_same_bits_in_place() {
         let (size, view) = (Size::new(150, 97), View::Sphere(Sphere::default()));
-        let with = |threads| {
-            let threads = NonZeroUsize::new(threads);
-            render(
-                &Position,
-                &interface(),
-                &view,
-                size,
-                threads,
-                Job::default(),
-            )
-            .unwrap()
+        let mut renderer = Renderer::<f64>::new(&position());
+        let with = |renderer: &Renderer<f64>, threads| {
+            renderer
+                .render(&view, size, NonZeroUsize::new(threads), Job::default())
+                .unwrap()
         };
-        let all = with(0);
-        assert_eq!(all, with(1));
-        assert_eq!(all, with(5));
+        let all = with(&renderer, 0);
+        assert_eq!(all, with(&renderer, 1));
+        assert_eq!(all, with(&renderer, 5));
         assert_eq!(all.names(), ["uv.X", "uv.Y"]);
+        renderer.set_parameters(&[-2.0]);
+        let scaled = with(&renderer, 0);
         for index in 0..size.pixels() {
             let expected = view
                 .hit(size, size.centre(index))
                 .map_or([0.0; 2], |hit| hit.uv);
             for axis in 0..2 {
-                let error = (all.channels()[axis][index] - expected[axis]).abs();
-                assert!(error < 1e-7, "pixel {index}: {error:e}");
+                let got = all.channels()[axis][index];
+                assert!(
+                    (got - expected[axis]).abs() < 1e-7,
+                    "pixel {index}: {got} {expected:?}"
+                );
+                assert_eq!(scaled.channels()[axis][index], -2.0 * got);
             }
         }
     }
@@ -256,13 +256,14 @@ mod tests {
     #[test]
     fn progress_reaches_the_last_row_and_cancelling_stops() {
         let (size, view) = (Size::new(300, 100), View::by_name("flat").unwrap());
+        let renderer = Renderer::<f32>::new(&position());
         let rows = Mutex::new(Vec::new());
         let progress = |done, all| rows.lock().unwrap().push((done, all));
         let job = Job {
             progress: Some(&progress),
             ..Job::default()
         };
-        render(&Position, &interface(), &view, size, None, job).unwrap();
+        renderer.render(&view, size, None, job).unwrap();
         let rows = rows.into_inner().unwrap();
         assert_eq!(rows.iter().max(), Some(&(100, 100)));
         assert_eq!(rows.len(), (300 * 100usize).div_ceil(TILE));
@@ -272,7 +273,7 @@ mod tests {
             cancel: Some(&cancel),
             ..Job::default()
         };
-        let result = render(&Position, &interface(), &view, size, None, job);
+        let result = renderer.render(&view, size, None, job);
         assert!(
             matches!(result, Err(CpuError::Cancelled(Cancelled))),
             "{result:?}"

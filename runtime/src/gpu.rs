@@ -11,7 +11,7 @@ mod render;
 
 pub use adapter::{AdapterChoice, AdapterReport};
 pub use error::GpuError;
-pub use pipeline::{ComputeShader, Pipeline};
+pub use pipeline::Pipeline;
 pub use render::Timing;
 
 use std::sync::{Arc, Mutex};

@@ -15,7 +15,8 @@ pub use flat::Flat;
 pub use plane::Plane;
 pub use sphere::Sphere;
 
-use crate::footprint::Footprint;
+use mipless_codegen::cpu::Footprint;
+
 use crate::image::Image;
 
 /// The width and the height of a picture, in pixels.

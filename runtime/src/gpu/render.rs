@@ -4,10 +4,11 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
+use mipless_codegen::cpu::Footprint;
+use mipless_codegen::wgsl::workgroups;
 use rayon::prelude::*;
 
 use super::{Gpu, GpuError, Pipeline};
-use crate::footprint::Footprint;
 use crate::image::Image;
 use crate::job::{Job, Tally};
 use crate::view::{Size, View};
@@ -33,6 +34,7 @@ impl Timing {
 /// Footprints in the first dispatch of a pipeline. Drivers stop a dispatch that takes seconds, so
 /// the size follows the time that the one before took.
 pub(super) const FIRST_CHUNK: usize = 1 << 14;
+/// Within every device's limit of workgroups a dispatch, too.
 const LARGEST_CHUNK: usize = 1 << 20;
 const SMALLEST_CHUNK: usize = 1 << 8;
 const SHORT: Duration = Duration::from_millis(60);
@@ -110,9 +112,7 @@ impl Gpu {
             .limits
             .max_storage_buffer_binding_size
             .min(self.limits.max_buffer_size);
-        let groups = u64::from(self.limits.max_compute_workgroups_per_dimension);
-        let invocations = groups * u64::from(pipeline.workgroup);
-        let chunk = (room / bytes).min(invocations).min(LARGEST_CHUNK as u64) as usize;
+        let chunk = (room / bytes).min(LARGEST_CHUNK as u64) as usize;
         if chunk == 0 {
             Err(GpuError::TooLarge)
         } else {
@@ -174,8 +174,8 @@ impl Gpu {
                 });
                 pass.set_pipeline(&pipeline.pipeline);
                 pass.set_bind_group(0, &group, &[]);
-                let groups = (footprints.len() as u32).div_ceil(pipeline.workgroup);
-                pass.dispatch_workgroups(groups, 1, 1);
+                let [x, y, z] = workgroups(footprints.len() as u32);
+                pass.dispatch_workgroups(x, y, z);
             }
             self.queue.submit([encoder.finish()]);
         })?;
