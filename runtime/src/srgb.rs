@@ -1,7 +1,7 @@
 //! The sRGB transfer function (IEC 61966-2-1), for numbers from 0 to 1.
 
 /// The sRGB number of a linear one. Numbers outside 0 to 1 are clamped; a NaN stays
-/// one.
+/// a NaN.
 pub fn srgb_from_linear(linear: f32) -> f32 {
     let x = f64::from(linear.clamp(0.0, 1.0));
     // In f64, so that white is exactly 1 after rounding.

@@ -1,6 +1,7 @@
 //! Finding an adapter.
 
 use std::fmt;
+use std::path::Path;
 
 use super::GpuError;
 
@@ -85,6 +86,28 @@ fn rank(adapter: &wgpu::Adapter) -> Option<u32> {
     computes.then_some(kind)
 }
 
+/// Whether this machine may have a hardware GPU: on Linux and Android, whether a kernel driver offers
+/// one. Asking first spares machines without one the start of the graphics drivers, some of which
+/// print to the standard streams.
+fn may_have_hardware() -> bool {
+    if !cfg!(any(target_os = "linux", target_os = "android")) {
+        return true;
+    }
+    let devices = [
+        "nvidiactl",
+        "nvidia0",
+        "nvhost-gpu",
+        "dxg",
+        "kgsl-3d0",
+        "mali0",
+    ];
+    let rendering = std::fs::read_dir("/dev/dri").is_ok_and(|nodes| nodes.count() > 0);
+    rendering
+        || devices
+            .iter()
+            .any(|name| Path::new("/dev").join(name).exists())
+}
+
 /// The best adapter that the choice allows.
 pub(super) fn best(choice: AdapterChoice) -> Result<wgpu::Adapter, GpuError> {
     // OpenGL comes last, for machines that have nothing else: starting it can print to the standard
@@ -93,6 +116,9 @@ pub(super) fn best(choice: AdapterChoice) -> Result<wgpu::Adapter, GpuError> {
         AdapterChoice::HardwareOnly => (2, &[wgpu::Backends::PRIMARY][..]),
         AdapterChoice::Any => (4, &[wgpu::Backends::PRIMARY, wgpu::Backends::GL][..]),
     };
+    if choice == AdapterChoice::HardwareOnly && !may_have_hardware() {
+        return Err(GpuError::NoAdapter(Vec::new()));
+    }
     let mut reports = Vec::new();
     for &backends in backends {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {

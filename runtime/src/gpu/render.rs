@@ -88,7 +88,8 @@ impl Gpu {
             if !footprints.is_empty() {
                 let begun = Instant::now();
                 let values = self.dispatch(pipeline, &buffers, &footprints, &mut timing)?;
-                if footprints.len() == chunk {
+                // Mostly background, a chunk says nothing about the next one.
+                if footprints.len() >= chunk / 4 {
                     adapt(pipeline, chunk, begun.elapsed());
                 }
                 let count = pipeline.results.len();
