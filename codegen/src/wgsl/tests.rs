@@ -288,7 +288,8 @@ fn longest_function(source: &str) -> usize {
 
 #[test]
 fn long_functions_are_split_and_validate_quickly() {
-    for near in [40, 20_000] {
+    // Local graphs, and the worst case, where everything reads anything before it.
+    for (near, seconds) in [(40, 2.0), (20_000, 10.0)] {
         let program = long_program(20_000, 7, near);
         assert!(program.module.entry().insts.len() > 20_000);
         let start = std::time::Instant::now();
@@ -299,7 +300,7 @@ fn long_functions_are_split_and_validate_quickly() {
         assert!(longest_function(&shader.source) <= 200, "{}", longest_function(&shader.source));
         assert_eq!(shader, emit(&program, &Options { entry: Entry::Compute }));
         println!("near {near}: emitted in {emitted:?}, validated in {validated:?}");
-        assert!(validated.as_secs_f64() < 2.0, "validated in {validated:?}");
+        assert!(validated.as_secs_f64() < seconds, "validated in {validated:?}");
     }
 }
 
