@@ -41,9 +41,16 @@ struct Name<'a>(&'a str);
 
 impl fmt::Display for Name<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let is_identifier = self.0.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        let is_identifier = self
+            .0
+            .bytes()
+            .all(|b| b.is_ascii_alphanumeric() || b == b'_')
             && self.0.bytes().next().is_some_and(|b| !b.is_ascii_digit());
-        if is_identifier { f.write_str(self.0) } else { write!(f, "{:?}", self.0) }
+        if is_identifier {
+            f.write_str(self.0)
+        } else {
+            write!(f, "{:?}", self.0)
+        }
     }
 }
 
@@ -119,7 +126,12 @@ impl Module {
         }
         f.write_str("  return")?;
         for (index, (name, value)) in function.results.iter().enumerate() {
-            write!(f, "{} {} = {value}", if index == 0 { "" } else { "," }, Name(name))?;
+            write!(
+                f,
+                "{} {} = {value}",
+                if index == 0 { "" } else { "," },
+                Name(name)
+            )?;
         }
         f.write_str("\n}\n")
     }
@@ -135,17 +147,38 @@ impl Module {
             Inst::Param(position) => write!(f, "param {position}"),
             Inst::Op(op, operands) => {
                 f.write_str(op.info().name)?;
-                operands[..op.info().operands.len()].iter().try_for_each(|v| write!(f, " {v}"))
+                operands[..op.info().operands.len()]
+                    .iter()
+                    .try_for_each(|v| write!(f, " {v}"))
             }
             Inst::Load(table, index) => {
-                write!(f, "load {} {index}", Name(&self.tables[*table as usize].name))
+                write!(
+                    f,
+                    "load {} {index}",
+                    Name(&self.tables[*table as usize].name)
+                )
             }
             Inst::Call(callee, arguments) => {
-                write!(f, "call {}{}", Name(&self.function(*callee).name), List(arguments))
+                write!(
+                    f,
+                    "call {}{}",
+                    Name(&self.function(*callee).name),
+                    List(arguments)
+                )
             }
-            Inst::Fold { function, count, init, captures } => {
+            Inst::Fold {
+                function,
+                count,
+                init,
+                captures,
+            } => {
                 let name = Name(&self.function(*function).name);
-                write!(f, "fold {name} count={count} init={} captures={}", List(init), List(captures))
+                write!(
+                    f,
+                    "fold {name} count={count} init={} captures={}",
+                    List(init),
+                    List(captures)
+                )
             }
             Inst::Result(of, position) => write!(f, "result {of} {position}"),
         }

@@ -50,7 +50,11 @@ impl std::error::Error for Violation {}
 pub fn verify(module: &Module) -> Result<(), Vec<Violation>> {
     let mut violations = Vec::new();
     let mut global = |message: String| {
-        violations.push(Violation { function: None, value: None, message });
+        violations.push(Violation {
+            function: None,
+            value: None,
+            message,
+        });
     };
     if module.functions.is_empty() {
         global("there is no function".to_owned());
@@ -74,9 +78,19 @@ pub fn verify(module: &Module) -> Result<(), Vec<Violation>> {
         }
     }
     for (id, function) in module.functions.iter().enumerate() {
-        Checker { module, id, function, violations: &mut violations }.function();
+        Checker {
+            module,
+            id,
+            function,
+            violations: &mut violations,
+        }
+        .function();
     }
-    if violations.is_empty() { Ok(()) } else { Err(violations) }
+    if violations.is_empty() {
+        Ok(())
+    } else {
+        Err(violations)
+    }
 }
 
 struct Checker<'a, 'v> {
@@ -89,7 +103,11 @@ struct Checker<'a, 'v> {
 impl<'a> Checker<'a, '_> {
     fn report(&mut self, value: Option<Value>, message: String) {
         let function = Some(self.function.name.clone());
-        self.violations.push(Violation { function, value, message });
+        self.violations.push(Violation {
+            function,
+            value,
+            message,
+        });
     }
 
     fn function(&mut self) {
@@ -121,7 +139,10 @@ impl<'a> Checker<'a, '_> {
 
     /// Reports a value that is a call or a fold, which have no type.
     fn scalar(&mut self, user: Option<Value>, value: Value) {
-        if matches!(self.function.inst(value), Inst::Call(..) | Inst::Fold { .. }) {
+        if matches!(
+            self.function.inst(value),
+            Inst::Call(..) | Inst::Fold { .. }
+        ) {
             self.report(user, format!("%{} is read, not its results", value.index()));
         }
     }
@@ -130,7 +151,10 @@ impl<'a> Checker<'a, '_> {
         let mut late = None;
         inst.operands(|v| late = late.or((v >= value).then_some(v)));
         if let Some(late) = late {
-            return self.report(Some(value), format!("reads %{}, defined later", late.index()));
+            return self.report(
+                Some(value),
+                format!("reads %{}, defined later", late.index()),
+            );
         }
         if !matches!(inst, Inst::Result(..)) {
             inst.operands(|v| self.scalar(Some(value), v));
@@ -167,10 +191,20 @@ impl<'a> Checker<'a, '_> {
                     self.arguments(value, arguments, callee.params.iter().map(|p| p.ty));
                 }
             }
-            Inst::Fold { function: callee, count, init, captures } => {
+            Inst::Fold {
+                function: callee,
+                count,
+                init,
+                captures,
+            } => {
                 self.arguments(value, &[*count], [Type::U32].into_iter());
-                let Some(callee) = self.callee(value, *callee) else { return };
-                let state = callee.results.iter().map(|&(_, v)| callee.types.get(v.index()));
+                let Some(callee) = self.callee(value, *callee) else {
+                    return;
+                };
+                let state = callee
+                    .results
+                    .iter()
+                    .map(|&(_, v)| callee.types.get(v.index()));
                 let state: Vec<Type> = state.flatten().copied().collect();
                 self.arguments(value, init, state.iter().copied());
                 let params: Vec<Type> = callee.params.iter().map(|p| p.ty).collect();
@@ -187,14 +221,18 @@ impl<'a> Checker<'a, '_> {
                 self.arguments(value, captures, params[expected.len()..].iter().copied());
             }
             Inst::Result(of, position) => {
-                let (Inst::Call(callee, _) | Inst::Fold { function: callee, .. }) =
-                    self.function.inst(*of)
+                let (Inst::Call(callee, _)
+                | Inst::Fold {
+                    function: callee, ..
+                }) = self.function.inst(*of)
                 else {
                     let message = format!("%{} is no call and no fold", of.index());
                     return self.report(Some(value), message);
                 };
                 // The call itself reports a callee that does not exist.
-                let Some(callee) = self.module.functions.get(callee.index()) else { return };
+                let Some(callee) = self.module.functions.get(callee.index()) else {
+                    return;
+                };
                 match callee.results.get(*position as usize) {
                     Some((_, result)) => {
                         if let Some(&ty) = callee.types.get(result.index()) {
@@ -213,7 +251,10 @@ impl<'a> Checker<'a, '_> {
     /// The function that a call or fold names, if that comes before this one.
     fn callee(&mut self, value: Value, callee: FunctionId) -> Option<&'a Function> {
         if callee.index() >= self.id {
-            self.report(Some(value), format!("calls function {}, not before it", callee.index()));
+            self.report(
+                Some(value),
+                format!("calls function {}, not before it", callee.index()),
+            );
             return None;
         }
         self.module.functions.get(callee.index())
@@ -223,7 +264,10 @@ impl<'a> Checker<'a, '_> {
     fn is(&mut self, value: Value, ty: Type) {
         let found = self.function.ty(value);
         if found != ty {
-            self.report(Some(value), format!("is {}, not {}", found.name(), ty.name()));
+            self.report(
+                Some(value),
+                format!("is {}, not {}", found.name(), ty.name()),
+            );
         }
     }
 
@@ -285,26 +329,50 @@ mod tests {
         type Break = fn(&mut Module);
         let cases: [(Break, &str); 15] = [
             (|m| m.functions.clear(), "no function"),
-            (|m| m.functions[1].name = "body".into(), "two functions are called \"body\""),
+            (
+                |m| m.functions[1].name = "body".into(),
+                "two functions are called \"body\"",
+            ),
             (|m| m.tables[0].data.clear(), "is empty"),
             (|m| m.tables[0].data[0] = f32::NAN, "holds NaN"),
-            (|m| m.functions[0].params[1].name = "index".into(), "two parameters"),
+            (
+                |m| m.functions[0].params[1].name = "index".into(),
+                "two parameters",
+            ),
             (|m| m.functions[0].results.clear(), "there is no result"),
-            (|m| m.functions[0].insts[2] = Inst::Op(Op::FloatU, [Value(4); 3]), "defined later"),
-            (|m| m.functions[0].insts[2] = Inst::Op(Op::FloatI, [Value(0); 3]), "takes (i32), not (u32)"),
+            (
+                |m| m.functions[0].insts[2] = Inst::Op(Op::FloatU, [Value(4); 3]),
+                "defined later",
+            ),
+            (
+                |m| m.functions[0].insts[2] = Inst::Op(Op::FloatI, [Value(0); 3]),
+                "takes (i32), not (u32)",
+            ),
             (|m| m.functions[0].types[2] = Type::I32, "is i32, not f32"),
-            (|m| m.functions[0].insts[0] = Inst::Param(7), "no parameter 7"),
+            (
+                |m| m.functions[0].insts[0] = Inst::Param(7),
+                "no parameter 7",
+            ),
             (|m| m.tables.clear(), "no table 0"),
             (|m| m.functions.reverse(), "calls function"),
             (|m| m.functions[0].params.swap(0, 1), "no body of a fold"),
-            (|m| m.functions[1].insts[3] = Inst::Result(Value(2), 1), "has no result 1"),
-            (|m| m.functions[1].results[0].1 = Value(2), "is read, not its results"),
+            (
+                |m| m.functions[1].insts[3] = Inst::Result(Value(2), 1),
+                "has no result 1",
+            ),
+            (
+                |m| m.functions[1].results[0].1 = Value(2),
+                "is read, not its results",
+            ),
         ];
         for (number, (break_it, message)) in cases.into_iter().enumerate() {
             let found = broken(break_it);
             assert!(found.contains(message), "case {number}: {found}");
         }
-        let infinite = Constant { ty: Type::F32, bits: f32::INFINITY.to_bits() };
+        let infinite = Constant {
+            ty: Type::F32,
+            bits: f32::INFINITY.to_bits(),
+        };
         assert!(broken(|m| m.functions[1].insts[0] = Inst::Const(infinite)).contains("not finite"));
     }
 }

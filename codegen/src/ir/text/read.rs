@@ -1,8 +1,6 @@
 //! Reading the text form.
 
-use crate::ir::{
-    Constant, Function, FunctionId, Inst, Module, Op, Parameter, Table, Type, Value,
-};
+use crate::ir::{Constant, Function, FunctionId, Inst, Module, Op, Parameter, Table, Type, Value};
 use rustc_hash::FxHashMap;
 use std::fmt;
 
@@ -35,7 +33,10 @@ impl Module {
         let mut reader = Reader::default();
         let mut last = 0;
         for (number, line) in (1..).zip(text.lines()) {
-            let at = |message| ParseError { line: number, message };
+            let at = |message| ParseError {
+                line: number,
+                message,
+            };
             last = number;
             let line = line.trim();
             if !line.is_empty() && !line.starts_with('#') {
@@ -43,7 +44,10 @@ impl Module {
             }
         }
         if reader.open.is_some() {
-            return Err(ParseError { line: last, message: "a function is not closed".to_owned() });
+            return Err(ParseError {
+                line: last,
+                message: "a function is not closed".to_owned(),
+            });
         }
         Ok(reader.module)
     }
@@ -67,12 +71,20 @@ impl<'a> Cursor<'a> {
     }
 
     fn expect(&mut self, mark: &str) -> Parsed<()> {
-        if self.take(mark) { Ok(()) } else { Err(format!("expected `{mark}` at `{}`", self.rest)) }
+        if self.take(mark) {
+            Ok(())
+        } else {
+            Err(format!("expected `{mark}` at `{}`", self.rest))
+        }
     }
 
     fn end(&mut self) -> Parsed<()> {
         self.skip_spaces();
-        if self.rest.is_empty() { Ok(()) } else { Err(format!("`{}` is too much", self.rest)) }
+        if self.rest.is_empty() {
+            Ok(())
+        } else {
+            Err(format!("`{}` is too much", self.rest))
+        }
     }
 
     /// The longest run of characters that `of` accepts.
@@ -92,8 +104,11 @@ impl<'a> Cursor<'a> {
     }
 
     fn number<T: std::str::FromStr>(&mut self) -> Parsed<T> {
-        let text = self.run("a number", |c| c.is_ascii_alphanumeric() || "+-.".contains(c))?;
-        text.parse().map_err(|_| format!("`{text}` is not a number of its type"))
+        let text = self.run("a number", |c| {
+            c.is_ascii_alphanumeric() || "+-.".contains(c)
+        })?;
+        text.parse()
+            .map_err(|_| format!("`{text}` is not a number of its type"))
     }
 
     fn value(&mut self) -> Parsed<Value> {
@@ -114,16 +129,26 @@ impl<'a> Cursor<'a> {
             self.expect("0x")?;
             let digits = self.word()?;
             let bits = u32::from_str_radix(digits, 16);
-            return bits.map(f32::from_bits).map_err(|_| format!("0x{digits} is not 32 bits"));
+            return bits
+                .map(f32::from_bits)
+                .map_err(|_| format!("0x{digits} is not 32 bits"));
         }
         let number: f32 = self.number()?;
-        if number.is_finite() { Ok(number) } else { Err("a real is out of range".to_owned()) }
+        if number.is_finite() {
+            Ok(number)
+        } else {
+            Err("a real is out of range".to_owned())
+        }
     }
 
     /// An identifier or a quoted text.
     fn name(&mut self) -> Parsed<String> {
         self.skip_spaces();
-        if self.rest.starts_with('"') { self.quoted() } else { self.word().map(str::to_owned) }
+        if self.rest.starts_with('"') {
+            self.quoted()
+        } else {
+            self.word().map(str::to_owned)
+        }
     }
 
     fn quoted(&mut self) -> Parsed<String> {
@@ -226,7 +251,10 @@ impl Reader {
                     }
                     let name = cursor.name()?;
                     cursor.expect(":")?;
-                    params.push(Parameter { name, ty: cursor.ty()? });
+                    params.push(Parameter {
+                        name,
+                        ty: cursor.ty()?,
+                    });
                 }
                 let doc = cursor.quoted()?;
                 cursor.expect("{")?;
@@ -304,7 +332,12 @@ impl Reader {
                 cursor.expect("init=")?;
                 let init = cursor.list()?;
                 cursor.expect("captures=")?;
-                Inst::Fold { function, count, init, captures: cursor.list()? }
+                Inst::Fold {
+                    function,
+                    count,
+                    init,
+                    captures: cursor.list()?,
+                }
             }
             "result" => {
                 let of = cursor.value()?;
@@ -375,11 +408,26 @@ function "das Ganze"(x: f32) "The whole." {
         for (from, to, line, message) in [
             ("load steps", "load stairs", 6, "no table \"stairs\""),
             ("= add", "= plus", 7, "no op `plus`"),
-            ("fold octave", "fold later", 14, "no function \"later\" before"),
+            (
+                "fold octave",
+                "fold later",
+                14,
+                "no function \"later\" before",
+            ),
             ("%3 swirl", "%4 swirl", 7, "%3 is expected"),
-            ("const 5", "const 5.5", 13, "`5.5` is not a number of its type"),
+            (
+                "const 5",
+                "const 5.5",
+                13,
+                "`5.5` is not a number of its type",
+            ),
             ("captures=()", "captures=(", 14, "expected `%`"),
-            ("= param 0\n  %1: f32", "= param 0 0\n  %1: f32", 4, "too much"),
+            (
+                "= param 0\n  %1: f32",
+                "= param 0 0\n  %1: f32",
+                4,
+                "too much",
+            ),
             ("\n}\n\n", "\n\n", 10, "expected `%`"),
             ("1e-45", "1e99", 1, "out of range"),
         ] {
