@@ -3,8 +3,8 @@
 mod manifest;
 mod translate;
 
-pub use manifest::{Manifest, Range, ManifestOutput, ManifestParameter, ManifestTable};
-pub use translate::{Target, Translated, TranslateError, translate};
+pub use manifest::{Manifest, ManifestOutput, ManifestParameter, ManifestTable, Range};
+pub use translate::{Target, TranslateError, Translated, translate};
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use std::fmt;

@@ -66,7 +66,11 @@ pub const fn workgroups(pixels: u32) -> [u32; 3] {
     if pixels <= PIXELS_PER_ROW {
         [pixels.div_ceil(WORKGROUP_SIZE), 1, 1]
     } else {
-        [PIXELS_PER_ROW / WORKGROUP_SIZE, pixels.div_ceil(PIXELS_PER_ROW), 1]
+        [
+            PIXELS_PER_ROW / WORKGROUP_SIZE,
+            pixels.div_ceil(PIXELS_PER_ROW),
+            1,
+        ]
     }
 }
 
@@ -256,7 +260,11 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         if reached[index] {
             instructions += module.functions[index].insts.len();
             for inst in &module.functions[index].insts {
-                if let Inst::Call(callee, _) | Inst::Fold { function: callee, .. } = inst {
+                if let Inst::Call(callee, _)
+                | Inst::Fold {
+                    function: callee, ..
+                } = inst
+                {
                     reached[callee.index()] = true;
                 }
             }
@@ -291,10 +299,15 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         .collect();
 
     let tables = (!module.tables.is_empty()).then(|| {
-        let mut tables = Tables { data: Vec::new(), entries: Vec::new() };
+        let mut tables = Tables {
+            data: Vec::new(),
+            entries: Vec::new(),
+        };
         for table in &module.tables {
             let first = tables.data.len() as u32;
-            tables.entries.push((table.name.clone(), first, table.data.len() as u32));
+            tables
+                .entries
+                .push((table.name.clone(), first, table.data.len() as u32));
             tables.data.extend_from_slice(&table.data);
         }
         tables
@@ -304,7 +317,10 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         signatures,
         globals,
         tables: names.tables.clone(),
-        table_offsets: tables.iter().flat_map(|t| t.entries.iter().map(|e| e.1)).collect(),
+        table_offsets: tables
+            .iter()
+            .flat_map(|t| t.entries.iter().map(|e| e.1))
+            .collect(),
         out: String::with_capacity(1024 + 40 * instructions),
     };
     push_structs(&mut context.out, &names, &face, tables.is_some());
@@ -314,7 +330,11 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     let text = entry_text(program, &names, &face);
     function::write(&mut context, FunctionId::from_index(last), Some(&text));
 
-    let Context { mut globals, out: mut source, .. } = context;
+    let Context {
+        mut globals,
+        out: mut source,
+        ..
+    } = context;
     let (entry_point, mut bindings) =
         push_entry_point(&mut source, &mut globals, options.entry, &names, &face);
     source.truncate(source.trim_end().len());

@@ -49,8 +49,10 @@ fn fill(
         match choices.next(12) {
             0 if !callees.is_empty() => {
                 let (callee, params) = &callees[choices.next(callees.len())];
-                let arguments: Vec<_> =
-                    params.iter().map(|&ty| choices.pick(b, values, ty)).collect();
+                let arguments: Vec<_> = params
+                    .iter()
+                    .map(|&ty| choices.pick(b, values, ty))
+                    .collect();
                 values.extend(b.call(callee, &arguments));
             }
             1 if !callees.is_empty() => {
@@ -58,8 +60,10 @@ fn fill(
                 if params[0] != Type::U32 || !params[1..].starts_with(&callee.results) {
                     continue;
                 }
-                let arguments: Vec<_> =
-                    params[1..].iter().map(|&ty| choices.pick(b, values, ty)).collect();
+                let arguments: Vec<_> = params[1..]
+                    .iter()
+                    .map(|&ty| choices.pick(b, values, ty))
+                    .collect();
                 let count = match choices.next(3) {
                     0 => {
                         let condition = choices.pick(b, values, Type::Bool);
@@ -87,8 +91,12 @@ fn fill(
             }
             _ => {
                 let op = Op::ALL[choices.next(Op::ALL.len())];
-                let operands: Vec<_> =
-                    op.info().operands.iter().map(|&ty| choices.pick(b, values, ty)).collect();
+                let operands: Vec<_> = op
+                    .info()
+                    .operands
+                    .iter()
+                    .map(|&ty| choices.pick(b, values, ty))
+                    .collect();
                 values.push(b.op(op, &operands));
             }
         }
@@ -105,11 +113,13 @@ pub(crate) fn program() -> impl Strategy<Value = Program> {
         for number in 0..choices.next(4) {
             let mut b = Builder::new(format!("helper_{number}"), "A helper.");
             let types = [Type::F32, Type::I32, Type::U32, Type::Bool];
-            let results: Vec<Type> =
-                (0..1 + choices.next(3)).map(|_| types[choices.next(4)]).collect();
-            let captures: Vec<Type> = (0..choices.next(3)).map(|_| types[choices.next(4)]).collect();
-            let params: Vec<Type> =
-                [&[Type::U32][..], &results, &captures].concat();
+            let results: Vec<Type> = (0..1 + choices.next(3))
+                .map(|_| types[choices.next(4)])
+                .collect();
+            let captures: Vec<Type> = (0..choices.next(3))
+                .map(|_| types[choices.next(4)])
+                .collect();
+            let params: Vec<Type> = [&[Type::U32][..], &results, &captures].concat();
             let mut values: Vec<Value> = (params.iter().enumerate())
                 .map(|(i, &ty)| b.param(format!("in_{i}"), ty))
                 .collect();
@@ -122,8 +132,10 @@ pub(crate) fn program() -> impl Strategy<Value = Program> {
             callees.push((b.finish(&mut module), params));
         }
         let mut b = Builder::new("random", "A random texture.");
-        let mut values: Vec<Value> =
-            FOOTPRINT.iter().map(|&(name, ty)| b.param(name, ty)).collect();
+        let mut values: Vec<Value> = FOOTPRINT
+            .iter()
+            .map(|&(name, ty)| b.param(name, ty))
+            .collect();
         values.extend(constants(&mut b, &mut choices));
         fill(&mut b, &mut values, &callees, &mut choices, 400);
         for channel in ["r", "g", "b"] {

@@ -11,8 +11,14 @@ use std::fmt::Write;
 
 /// How the entry spells the eight scalars of the footprint.
 const FOOTPRINT_PATHS: [&str; 8] = [
-    "footprint.cell.x", "footprint.cell.y", "footprint.uv.x", "footprint.uv.y", "footprint.du.x",
-    "footprint.du.y", "footprint.dv.x", "footprint.dv.y",
+    "footprint.cell.x",
+    "footprint.cell.y",
+    "footprint.uv.x",
+    "footprint.uv.y",
+    "footprint.du.x",
+    "footprint.du.y",
+    "footprint.dv.x",
+    "footprint.dv.y",
 ];
 
 const AXES: [&str; 4] = ["x", "y", "z", "w"];
@@ -47,14 +53,28 @@ fn type_text(scalar: Type, components: usize) -> String {
         Type::F32 => "f",
         Type::I32 => "i",
         Type::U32 => "u",
-        Type::Bool => return if components == 1 { "bool".into() } else { format!("vec{components}<bool>") },
+        Type::Bool => {
+            return if components == 1 {
+                "bool".into()
+            } else {
+                format!("vec{components}<bool>")
+            };
+        }
     };
-    if components == 1 { scalar.name().to_owned() } else { format!("vec{components}{suffix}") }
+    if components == 1 {
+        scalar.name().to_owned()
+    } else {
+        format!("vec{components}{suffix}")
+    }
 }
 
 /// The type of a parameter's member: truth values are not host-shareable, so they are `u32` there.
 fn shared(scalar: Type) -> Type {
-    if scalar == Type::Bool { Type::U32 } else { scalar }
+    if scalar == Type::Bool {
+        Type::U32
+    } else {
+        scalar
+    }
 }
 
 /// Lays out the parameters and outputs of a program.
@@ -82,12 +102,19 @@ pub(super) fn face(program: &Program) -> Face {
         offset += 4 * components as u32;
         first += components;
     }
-    assert_eq!(entry.params.len(), first, "parameters of the entry and of its interface");
+    assert_eq!(
+        entry.params.len(),
+        first,
+        "parameters of the entry and of its interface"
+    );
 
     let mut scope = Scope::default();
     let mut outputs: Vec<OutputField> = Vec::new();
     let mut first = 0;
-    for variance in [false, true].into_iter().take(1 + usize::from(interface.moments)) {
+    for variance in [false, true]
+        .into_iter()
+        .take(1 + usize::from(interface.moments))
+    {
         for port in &interface.outputs {
             let suffix = if variance { " variance" } else { "" };
             outputs.push(OutputField {
@@ -101,9 +128,17 @@ pub(super) fn face(program: &Program) -> Face {
             first += port.ty.components();
         }
     }
-    assert_eq!(entry.results.len(), first, "results of the entry and of its interface");
+    assert_eq!(
+        entry.results.len(),
+        first,
+        "results of the entry and of its interface"
+    );
     assert!(first > 0, "a texture has an output");
-    Face { parameters, parameters_size: offset.next_multiple_of(16), outputs }
+    Face {
+        parameters,
+        parameters_size: offset.next_multiple_of(16),
+        outputs,
+    }
 }
 
 /// Appends `Footprint`, the structs of parameters and outputs, and the array of tables.
@@ -127,8 +162,10 @@ pub(super) fn push_structs(out: &mut String, names: &Names, face: &Face, tables:
             .map(|p| (p.field.as_str(), type_text(p.scalar, p.ty.components())));
         push(&names.parameters, &mut fields);
     }
-    let mut fields =
-        face.outputs.iter().map(|o| (o.field.as_str(), type_text(o.scalar, o.ty.components())));
+    let mut fields = face
+        .outputs
+        .iter()
+        .map(|o| (o.field.as_str(), type_text(o.scalar, o.ty.components())));
     push(&names.outputs, &mut fields);
     if tables {
         writeln!(
@@ -171,7 +208,11 @@ pub(super) fn entry_text(program: &Program, names: &Names, face: &Face) -> Entry
             n => format!("{comma}{}(", type_text(output.scalar, n)),
         };
         for component in 0..components {
-            let text = if component == 0 { open.clone() } else { ", ".to_owned() };
+            let text = if component == 0 {
+                open.clone()
+            } else {
+                ", ".to_owned()
+            };
             results.push((text, Some(output.first as usize + component)));
         }
         if components > 1 {
@@ -179,7 +220,11 @@ pub(super) fn entry_text(program: &Program, names: &Names, face: &Face) -> Entry
         }
     }
     results.push((")".to_owned(), None));
-    EntryText { signature, parameters, results }
+    EntryText {
+        signature,
+        parameters,
+        results,
+    }
 }
 
 /// A scalar of an output as an f32.
@@ -201,9 +246,17 @@ pub(super) fn push_entry_point(
     let mut bindings = Vec::new();
     let mut declare = |out: &mut String, binding, kind, words: &str, space: &str, ty: &str| {
         let name = scope.take(format!("{}_{words}", names.function));
-        writeln!(out, "@group(0) @binding({binding}) var<{space}> {name}: {ty};")
-            .expect("a string takes all text");
-        bindings.push(Binding { group: 0, binding, name: name.clone(), kind });
+        writeln!(
+            out,
+            "@group(0) @binding({binding}) var<{space}> {name}: {ty};"
+        )
+        .expect("a string takes all text");
+        bindings.push(Binding {
+            group: 0,
+            binding,
+            name: name.clone(),
+            kind,
+        });
         name
     };
     let stage = match entry {
@@ -213,15 +266,36 @@ pub(super) fn push_entry_point(
     };
     let footprints = (entry == Entry::Compute).then(|| {
         let kind = BindingKind::Footprints;
-        declare(out, FOOTPRINTS_BINDING, kind, "footprints", "storage, read", "array<Footprint>")
+        declare(
+            out,
+            FOOTPRINTS_BINDING,
+            kind,
+            "footprints",
+            "storage, read",
+            "array<Footprint>",
+        )
     });
     let parameters = (!face.parameters.is_empty()).then(|| {
         let kind = BindingKind::Parameters;
-        declare(out, PARAMETERS_BINDING, kind, "uniforms", "uniform", &names.parameters)
+        declare(
+            out,
+            PARAMETERS_BINDING,
+            kind,
+            "uniforms",
+            "uniform",
+            &names.parameters,
+        )
     });
     let pixels = (entry == Entry::Compute).then(|| {
         let kind = BindingKind::Outputs;
-        declare(out, OUTPUTS_BINDING, kind, "pixels", "storage, read_write", "array<f32>")
+        declare(
+            out,
+            OUTPUTS_BINDING,
+            kind,
+            "pixels",
+            "storage, read_write",
+            "array<f32>",
+        )
     });
     if !bindings.is_empty() {
         out.push('\n');
@@ -270,7 +344,8 @@ fn push_compute(
             }
             let value = as_f32(output.scalar, &path);
             let at = output.first as usize + component;
-            writeln!(out, "    {pixels}[first + {at}u] = {value};").expect("a string takes all text");
+            writeln!(out, "    {pixels}[first + {at}u] = {value};")
+                .expect("a string takes all text");
         }
     }
     out.push_str("}\n");
@@ -294,7 +369,13 @@ fn push_fragment(
                 1 => format!("vec4f(vec3f({}), 1.0)", as_f32(output.scalar, &path)),
                 2 => format!("vec4f({}, {}, 0.0, 1.0)", part("x"), part("y")),
                 3 => format!("vec4f({}, {}, {}, 1.0)", part("x"), part("y"), part("z")),
-                _ => format!("vec4f({}, {}, {}, {})", part("x"), part("y"), part("z"), part("w")),
+                _ => format!(
+                    "vec4f({}, {}, {}, {})",
+                    part("x"),
+                    part("y"),
+                    part("z"),
+                    part("w")
+                ),
             }
         })
         .collect();

@@ -56,7 +56,9 @@ pub(super) fn form(op: Op) -> &'static Form {
 }
 
 fn parse(template: &'static str) -> Form {
-    let middle = template.strip_prefix("{a}").and_then(|t| t.strip_suffix("{b}"));
+    let middle = template
+        .strip_prefix("{a}")
+        .and_then(|t| t.strip_suffix("{b}"));
     if let Some(operator) = middle {
         use level::{BITS, PRODUCT, SHIFT, SUM, UNARY};
         let (level, left, right, chains) = match operator.trim() {
@@ -67,7 +69,13 @@ fn parse(template: &'static str) -> Form {
             "&" | "|" | "^" => (BITS, UNARY, UNARY, true),
             other => panic!("the op table has an operator of unknown precedence: {other}"),
         };
-        return Form::Infix { operator, level, left, right, chains };
+        return Form::Infix {
+            operator,
+            level,
+            left,
+            right,
+            chains,
+        };
     }
     match template {
         "-{a}" => return Form::Prefix("-"),
@@ -111,7 +119,11 @@ pub(super) fn push_constant(out: &mut String, constant: Constant) -> u8 {
             let number = f32::from_bits(bits);
             assert!(number.is_finite(), "a constant of the IR is {number}");
             push_f32(out, number);
-            if number.is_sign_negative() { level::UNARY } else { level::PRIMARY }
+            if number.is_sign_negative() {
+                level::UNARY
+            } else {
+                level::PRIMARY
+            }
         }
         Type::I32 => {
             let number = bits as i32;
@@ -125,7 +137,11 @@ pub(super) fn push_constant(out: &mut String, constant: Constant) -> u8 {
             }
             push_number(out, number.unsigned_abs());
             out.push('i');
-            if number < 0 { level::UNARY } else { level::PRIMARY }
+            if number < 0 {
+                level::UNARY
+            } else {
+                level::PRIMARY
+            }
         }
         Type::U32 => {
             push_number(out, bits);
@@ -167,7 +183,17 @@ mod tests {
 
     #[test]
     fn literals_read_back_to_the_bit_also_by_way_of_f64() {
-        for x in [0.0, -0.0, 1.0, -3.5, 0.1, 1e-45, f32::MIN_POSITIVE, f32::MAX, 16_777_216.0] {
+        for x in [
+            0.0,
+            -0.0,
+            1.0,
+            -3.5,
+            0.1,
+            1e-45,
+            f32::MIN_POSITIVE,
+            f32::MAX,
+            16_777_216.0,
+        ] {
             assert_eq!(literal(x).parse::<f32>().unwrap().to_bits(), x.to_bits());
         }
         // WGSL reads a literal without suffix as f64 and rounds it then.
@@ -178,7 +204,11 @@ mod tests {
             if x.is_finite() {
                 let text = literal(x);
                 assert!(text.contains(['.', 'e']), "{text} reads as an integer");
-                assert_eq!((text.parse::<f64>().unwrap() as f32).to_bits(), bits, "{text}");
+                assert_eq!(
+                    (text.parse::<f64>().unwrap() as f32).to_bits(),
+                    bits,
+                    "{text}"
+                );
             }
         }
     }

@@ -189,7 +189,10 @@ impl<'a> Writer<'_, 'a> {
             (None, Some(_)) => PACKED,
             (None, None) => BARE,
         };
-        params.iter().flatten().for_each(|v| self.places[v.index()] = place);
+        params
+            .iter()
+            .flatten()
+            .for_each(|v| self.places[v.index()] = place);
 
         self.push_doc(&function.doc);
         self.push("fn ");
@@ -246,18 +249,27 @@ impl<'a> Writer<'_, 'a> {
             Inst::Result(of, _) => self.function.inst(*of),
             inst => inst,
         };
-        if matches!(inst, Inst::Fold { .. }) { 3 } else { 1 }
+        if matches!(inst, Inst::Fold { .. }) {
+            3
+        } else {
+            1
+        }
     }
 
     fn part(&mut self, id: FunctionId, number: usize, total: usize, part: &Part, all: &[Part]) {
         let base = self.signature(id).name.clone();
-        let name = self.context.globals.take(format!("{base}_part_{}", number + 1));
+        let name = self
+            .context
+            .globals
+            .take(format!("{base}_part_{}", number + 1));
         let camel = super::name::camel(&name);
         let packed = (part.inputs.len() > PARAMETERS)
             .then(|| self.context.globals.take(format!("{camel}Args")));
         let results = (part.outputs.len() > 1).then(|| self.context.globals.take(camel));
         let typed = |writer: &mut Self, values: &[Value]| -> Vec<(String, Type)> {
-            (values.iter()).map(|&v| (writer.name_text(v), writer.function.ty(v))).collect()
+            (values.iter())
+                .map(|&v| (writer.name_text(v), writer.function.ty(v)))
+                .collect()
         };
         let (inputs, outputs) = (typed(self, &part.inputs), typed(self, &part.outputs));
         if let Some(packed) = &packed {
@@ -285,7 +297,9 @@ impl<'a> Writer<'_, 'a> {
         self.push(results.as_deref().unwrap_or(outputs[0].1.name()));
         self.push(" {\n");
         let place = if packed.is_some() { PACKED } else { BARE };
-        part.inputs.iter().for_each(|v| self.places[v.index()] = place);
+        part.inputs
+            .iter()
+            .for_each(|v| self.places[v.index()] = place);
         for &item in &part.items {
             self.item(item, all);
         }
@@ -298,8 +312,17 @@ impl<'a> Writer<'_, 'a> {
             self.push(if index == 0 { "" } else { ", " });
             self.name(value);
         }
-        self.push(if results.is_some() { ");\n}\n\n" } else { ";\n}\n\n" });
-        self.part_signatures.push(Signature { name, packed, results, fields: Vec::new() });
+        self.push(if results.is_some() {
+            ");\n}\n\n"
+        } else {
+            ";\n}\n\n"
+        });
+        self.part_signatures.push(Signature {
+            name,
+            packed,
+            results,
+            fields: Vec::new(),
+        });
     }
 
     fn item(&mut self, item: Item, parts: &[Part]) {
@@ -331,7 +354,11 @@ impl<'a> Writer<'_, 'a> {
             self.name(value);
         }
         self.push(if packed.is_some() { "));\n" } else { ");\n" });
-        let place = if part.outputs.len() == 1 { BARE } else { PART + number };
+        let place = if part.outputs.len() == 1 {
+            BARE
+        } else {
+            PART + number
+        };
         for value in &part.outputs {
             self.places[value.index()] = place;
         }
@@ -363,7 +390,10 @@ impl<'a> Writer<'_, 'a> {
     fn hide_constant(&mut self, inst: &Inst) {
         let Inst::Op(op, operands) = inst else { return };
         let operands = &operands[..op.info().operands.len()];
-        if operands.iter().any(|&v| self.function.constant(v).is_none()) {
+        if operands
+            .iter()
+            .any(|&v| self.function.constant(v).is_none())
+        {
             return;
         }
         self.generated += 1;
@@ -377,7 +407,13 @@ impl<'a> Writer<'_, 'a> {
     }
 
     fn fold(&mut self, value: Value, of: Value, turns: Count) {
-        let Inst::Fold { function: callee, init, captures, .. } = self.function.inst(of) else {
+        let Inst::Fold {
+            function: callee,
+            init,
+            captures,
+            ..
+        } = self.function.inst(of)
+        else {
             unreachable!("the caller has seen a fold");
         };
         let results = self.signature(*callee).results.clone();
@@ -413,7 +449,11 @@ impl<'a> Writer<'_, 'a> {
         self.local_name(value);
         self.push(" = ");
         self.open_call(*callee);
-        self.push(if matches!(turns, Count::Times(_)) { "i" } else { "0u" });
+        self.push(if matches!(turns, Count::Times(_)) {
+            "i"
+        } else {
+            "0u"
+        });
         for index in 0..init.len() {
             self.push(", ");
             self.local_name(value);
@@ -445,7 +485,13 @@ impl<'a> Writer<'_, 'a> {
 
     fn op(&mut self, op: Op, operands: &[Value; 3], place: u8) {
         match form(op) {
-            Form::Infix { operator, level, left, right, chains } => {
+            Form::Infix {
+                operator,
+                level,
+                left,
+                right,
+                chains,
+            } => {
                 let parentheses = *level < place;
                 self.push(if parentheses { "(" } else { "" });
                 let same = self.statements.inlined[operands[0].index()]
@@ -512,7 +558,12 @@ impl<'a> Writer<'_, 'a> {
                 }
                 self.close_call(*callee);
             }
-            Inst::Fold { function: callee, init, captures, .. } => {
+            Inst::Fold {
+                function: callee,
+                init,
+                captures,
+                ..
+            } => {
                 self.open_call(*callee);
                 self.push("0u");
                 for &argument in init.iter().chain(captures) {
@@ -578,8 +629,10 @@ impl<'a> Writer<'_, 'a> {
                 {
                     self.local_name(*of);
                     self.push(".");
-                    let (Inst::Call(callee, _) | Inst::Fold { function: callee, .. }) =
-                        self.function.inst(*of)
+                    let (Inst::Call(callee, _)
+                    | Inst::Fold {
+                        function: callee, ..
+                    }) = self.function.inst(*of)
                     else {
                         unreachable!("a result is of a call or a fold");
                     };
@@ -597,7 +650,9 @@ impl<'a> Writer<'_, 'a> {
                     unreachable!("only parameters have the entry's place");
                 };
                 let entry = self.entry.expect("the entry is being written");
-                self.context.out.push_str(&entry.parameters[*position as usize]);
+                self.context
+                    .out
+                    .push_str(&entry.parameters[*position as usize]);
             }
             part => {
                 self.push("p");
@@ -648,8 +703,15 @@ impl<'a> Writer<'_, 'a> {
                 _ => (value, false),
             };
             match function.inst(call) {
-                Inst::Call(callee, _) | Inst::Fold { function: callee, .. } => {
-                    let stem = if of_call { self.common_stem(value, *callee) } else { None };
+                Inst::Call(callee, _)
+                | Inst::Fold {
+                    function: callee, ..
+                } => {
+                    let stem = if of_call {
+                        self.common_stem(value, *callee)
+                    } else {
+                        None
+                    };
                     Some(stem.unwrap_or_else(|| self.context.module.function(*callee).name.clone()))
                 }
                 _ => None,
@@ -669,7 +731,12 @@ impl<'a> Writer<'_, 'a> {
     /// follow their call.
     fn common_stem(&self, call: Value, callee: FunctionId) -> Option<String> {
         let fields = &self.context.module.function(callee).results;
-        (call.index() + 1..self.function.insts.len().min(call.index() + 1 + fields.len()))
+        (call.index() + 1
+            ..self
+                .function
+                .insts
+                .len()
+                .min(call.index() + 1 + fields.len()))
             .map_while(|index| match self.function.insts[index] {
                 Inst::Result(of, position) if of == call => Some((index, position)),
                 _ => None,
@@ -683,7 +750,9 @@ impl<'a> Writer<'_, 'a> {
     }
 
     fn signature(&self, id: FunctionId) -> &Signature {
-        self.context.signatures[id.index()].as_ref().expect("the function is reached")
+        self.context.signatures[id.index()]
+            .as_ref()
+            .expect("the function is reached")
     }
 
     fn push(&mut self, text: &str) {
@@ -718,7 +787,11 @@ pub(super) fn push_doc(out: &mut String, doc: &str) {
     out.push_str("/// ");
     // Line ends of any script would end the comment early.
     let is_break = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
-    out.extend(doc.trim().chars().map(|c| if is_break(c) { ' ' } else { c }));
+    out.extend(
+        doc.trim()
+            .chars()
+            .map(|c| if is_break(c) { ' ' } else { c }),
+    );
     out.push('\n');
 }
 

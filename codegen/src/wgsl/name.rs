@@ -88,10 +88,18 @@ mod tests {
     #[test]
     fn identifiers_avoid_reserved_words_and_foreign_letters() {
         for (text, expected) in [
-            ("marble", "marble"), ("3d noise!", "n3d_noise"), ("a__b_", "a_b"), ("σ", "x"),
-            ("texture", "texture_value"), ("Pass", "Pass_value"), ("lerp", "lerp_value"),
-            ("gl_Position", "gl_Position_value"), ("thread", "thread_value"), ("_", "x"),
-            ("fn", "fn_value"), ("Wald & Höhe", "Wald_H_he"),
+            ("marble", "marble"),
+            ("3d noise!", "n3d_noise"),
+            ("a__b_", "a_b"),
+            ("σ", "x"),
+            ("texture", "texture_value"),
+            ("Pass", "Pass_value"),
+            ("lerp", "lerp_value"),
+            ("gl_Position", "gl_Position_value"),
+            ("thread", "thread_value"),
+            ("_", "x"),
+            ("fn", "fn_value"),
+            ("Wald & Höhe", "Wald_H_he"),
         ] {
             assert_eq!(identifier(text), expected, "{text}");
         }
@@ -100,8 +108,9 @@ mod tests {
     #[test]
     fn a_scope_never_gives_a_name_twice() {
         let mut scope = Scope::default();
-        let given: Vec<_> =
-            ["a", "a_2", "a", "a", "a_2"].map(|n| scope.take(n.to_owned())).into();
+        let given: Vec<_> = ["a", "a_2", "a", "a", "a_2"]
+            .map(|n| scope.take(n.to_owned()))
+            .into();
         assert_eq!(given, ["a", "a_2", "a_3", "a_4", "a_2_2"]);
     }
 }

@@ -85,8 +85,14 @@ pub(super) fn split(
 ) -> Split {
     let total: u32 = statements.iter().map(|&(_, weight)| weight).sum();
     if total <= WHOLE {
-        let items = statements.iter().map(|&(v, _)| Item::Statement(v)).collect();
-        return Split { parts: Vec::new(), items };
+        let items = statements
+            .iter()
+            .map(|&(v, _)| Item::Statement(v))
+            .collect();
+        return Split {
+            parts: Vec::new(),
+            items,
+        };
     }
     let mut level = Level::default();
     let mut line_of = vec![OUTSIDE; values];
@@ -115,7 +121,11 @@ pub(super) fn split(
             // A part of one line would never get the level shorter.
             let alone = parts.last().is_some_and(|p| p.items.len() < 2);
             if weight + more > PART && !(alone && parts.len() as u32 > first) {
-                parts.push(Part { items: Vec::new(), inputs: Vec::new(), outputs: Vec::new() });
+                parts.push(Part {
+                    items: Vec::new(),
+                    inputs: Vec::new(),
+                    outputs: Vec::new(),
+                });
                 weight = 0;
             }
             weight += more;
@@ -165,5 +175,8 @@ pub(super) fn split(
             break;
         }
     }
-    Split { parts, items: level.items }
+    Split {
+        parts,
+        items: level.items,
+    }
 }

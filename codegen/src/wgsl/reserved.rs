@@ -69,8 +69,11 @@ const MSL: &str = "
     float2x2 float3x3 float4x4 atomic_int atomic_bool true false sizeof";
 
 static WORDS: LazyLock<FxHashSet<&'static str>> = LazyLock::new(|| {
-    let ours = [WGSL, GLSL, HLSL, MSL].into_iter().flat_map(str::split_whitespace);
-    ours.chain(naga::keywords::wgsl::RESERVED.iter().copied()).collect()
+    let ours = [WGSL, GLSL, HLSL, MSL]
+        .into_iter()
+        .flat_map(str::split_whitespace);
+    ours.chain(naga::keywords::wgsl::RESERVED.iter().copied())
+        .collect()
 });
 
 /// Whether a target language takes this word for itself.

@@ -54,9 +54,10 @@ pub(super) fn count(function: &Function, count: Value) -> Count {
 /// Whether a call or fold has one result, so that it is written through that result.
 pub(super) fn is_single(module: &Module, inst: &Inst) -> bool {
     match inst {
-        Inst::Call(callee, _) | Inst::Fold { function: callee, .. } => {
-            module.function(*callee).results.len() == 1
-        }
+        Inst::Call(callee, _)
+        | Inst::Fold {
+            function: callee, ..
+        } => module.function(*callee).results.len() == 1,
         _ => false,
     }
 }
@@ -64,7 +65,13 @@ pub(super) fn is_single(module: &Module, inst: &Inst) -> bool {
 /// Calls `visit` with every value that the text of `value` reads.
 fn reads(function: &Function, value: Value, mut visit: impl FnMut(Value)) {
     let inst = function.inst(value);
-    let Inst::Fold { count: turns, init, captures, .. } = inst else {
+    let Inst::Fold {
+        count: turns,
+        init,
+        captures,
+        ..
+    } = inst
+    else {
         return inst.operands(visit);
     };
     match count(function, *turns) {
@@ -83,7 +90,9 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
     }
     for index in (0..size).rev() {
         if readers[index] > 0 {
-            reads(function, Value::from_index(index), |v| readers[v.index()] += 1);
+            reads(function, Value::from_index(index), |v| {
+                readers[v.index()] += 1
+            });
         }
     }
 
@@ -104,7 +113,12 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
             ),
             Inst::Load(..) => (24, true),
             Inst::Call(callee, _) => (module.function(*callee).name.len() as u32 + 12, false),
-            Inst::Fold { function: callee, count: turns, captures, .. } => {
+            Inst::Fold {
+                function: callee,
+                count: turns,
+                captures,
+                ..
+            } => {
                 let turns = count(function, *turns);
                 if let Count::Times(value) = turns {
                     inlined[value.index()] = false;
@@ -129,7 +143,11 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
             if inlined[v.index()] && index - v.index() > FARTHEST {
                 inlined[v.index()] = false;
             }
-            total += if inlined[v.index()] { length[v.index()] } else { NAME };
+            total += if inlined[v.index()] {
+                length[v.index()]
+            } else {
+                NAME
+            };
         });
         while total > LONGEST {
             let mut longest = None;
@@ -144,8 +162,7 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
             total = total - length[longest] + NAME;
         }
         length[index] = total;
-        inlined[index] =
-            may_inline && readers[index] == 1 && !function.names.contains_key(&value);
+        inlined[index] = may_inline && readers[index] == 1 && !function.names.contains_key(&value);
     }
     for &(_, value) in &function.results {
         if size - value.index() > FARTHEST {
@@ -179,7 +196,9 @@ pub(super) fn inputs(
         Inst::Result(of, _) => *of,
         _ => statement,
     };
-    reads(function, source, |v| named(module, function, inlined, v, visit));
+    reads(function, source, |v| {
+        named(module, function, inlined, v, visit)
+    });
 }
 
 /// Calls `visit` with the values that the text of `value` reads by name, itself included.
