@@ -70,7 +70,7 @@ pub trait Float:
 }
 
 macro_rules! float_bank {
-    ($F:ident, $floor:path, $exp:path, $ln:path, $sin:path, $cos:path) => {
+    ($F:ident, $to_i32:path, $floor:path, $exp:path, $ln:path, $sin:path, $cos:path) => {
         impl Float for $F {
             #[inline(always)]
             fn from_f32(x: f32) -> Self {
@@ -94,7 +94,7 @@ macro_rules! float_bank {
             }
             #[inline(always)]
             fn to_i32(self) -> i32 {
-                self as i32
+                $to_i32(self)
             }
             #[inline(always)]
             fn bits(self) -> u32 {
@@ -137,13 +137,26 @@ macro_rules! float_bank {
 }
 float_bank!(
     f32,
+    elementary::to_i32,
     elementary::floor,
     elementary::exp,
     elementary::ln,
     elementary::sin,
     elementary::cos
 );
-float_bank!(f64, f64::floor, exp_f64, ln_f64, f64::sin, f64::cos);
+float_bank!(
+    f64,
+    to_i32_f64,
+    f64::floor,
+    exp_f64,
+    ln_f64,
+    f64::sin,
+    f64::cos
+);
+
+fn to_i32_f64(x: f64) -> i32 {
+    x as i32
+}
 
 fn exp_f64(x: f64) -> f64 {
     x.clamp(

@@ -7,5 +7,7 @@ pub mod float;
 pub mod ir;
 mod lower;
 pub mod moments;
+pub mod target;
+pub mod wgsl;
 
 pub use lower::{Bundle, Lower, Method, NodeDef, Options, ParseMethodError, PixelFilter, compile};

@@ -3,6 +3,7 @@
 use super::code::{Code, Step};
 use crate::float::Float;
 use crate::ir::for_each_op;
+use std::marker::PhantomData;
 use std::mem::swap;
 
 /// How many evaluations a register holds. A register of f32 is eight cache lines: long enough to
@@ -21,6 +22,7 @@ pub(super) struct Lanes<T>(pub(super) [T; LANES]);
 #[derive(Debug)]
 pub(super) struct Registers<F> {
     pub(super) floats: Vec<Box<Lanes<F>>>,
+    #[expect(clippy::vec_box, reason = "registers trade places by their addresses")]
     pub(super) words: Vec<Box<Lanes<u32>>>,
     spare_float: Box<Lanes<F>>,
     spare_word: Box<Lanes<u32>>,
@@ -124,7 +126,11 @@ macro_rules! into_destination {
 macro_rules! run_row {
     ($registers:ident, $step:ident, ($($p:ident: $pt:tt),*) -> $rt:tt { $cpu:expr }) => {{
         #[inline(always)]
-        fn lanes<F: Float>(out: &mut [stored!($rt, F); LANES], $($p: &[stored!($pt, F); LANES]),*) {
+        fn lanes<F: Float>(
+            _bank: PhantomData<F>,
+            out: &mut [stored!($rt, F); LANES],
+            $($p: &[stored!($pt, F); LANES]),*
+        ) {
             for lane in 0..LANES {
                 $(let $p = read!($pt, $p[lane]);)*
                 let result: $rt = $cpu;
@@ -133,7 +139,7 @@ macro_rules! run_row {
         }
         let [$($p,)* ..] = $step.operands;
         into_destination!($rt, $registers, $step, |out| {
-            lanes::<F>(out, $(register!($pt, $registers, $p)),*)
+            lanes(PhantomData::<F>, out, $(register!($pt, $registers, $p)),*)
         });
     }};
 }

@@ -230,13 +230,13 @@ fn sample(ty: Type, i: u32) -> u32 {
     match ty {
         Type::F32 => match EDGES.get(i as usize) {
             Some(x) => x.to_bits(),
-            None if i % 3 == 0 => (mixed as i32 as f32 * 1e-8).to_bits(),
+            None if i.is_multiple_of(3) => (mixed as i32 as f32 * 1e-8).to_bits(),
             None => (mixed & 0xbfff_ffff) | 0x0080_0000,
         },
         Type::Bool => mixed >> 31,
         _ => match i {
             0..3 => [0, u32::MAX, 0x8000_0000][i as usize],
-            _ if i % 3 == 0 => mixed >> 26,
+            _ if i.is_multiple_of(3) => mixed >> 26,
             _ => mixed,
         },
     }
@@ -438,7 +438,7 @@ fn grow(b: &mut Builder, values: &mut Vec<Value>, callees: &[Callee], genes: &[[
         } else if choice < rows + 6 {
             let [p, q, r] = [x, y, z].map(|gene| pick(b, Type::F32, gene));
             let product = b.mul(p, q);
-            values.push(if what % 2 == 0 {
+            values.push(if what.is_multiple_of(2) {
                 b.sub(r, product)
             } else {
                 b.sub(product, r)
@@ -503,7 +503,11 @@ fn generate(functions: &[Vec<[u8; 4]>]) -> Module {
             let of_type: Vec<Value> = values.iter().copied().filter(|&v| b.ty(v) == ty).collect();
             // Mostly late values; sometimes parameters and constants.
             let gene = genes.get(i).map_or(0, |g| usize::from(g[3]));
-            let back = if gene % 4 == 0 { gene / 4 } else { gene % 3 };
+            let back = if gene.is_multiple_of(4) {
+                gene / 4
+            } else {
+                gene % 3
+            };
             b.result(
                 format!("r{i}"),
                 of_type[of_type.len() - 1 - back % of_type.len()],

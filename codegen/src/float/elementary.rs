@@ -1,5 +1,7 @@
 //! The elementary functions of the f32 bank: branch-free, so that a loop over lanes vectorises.
 
+use std::hint::select_unpredictable;
+
 /// The operands that `exp` tells apart: e to these powers are finite and normal.
 pub(super) const EXP_RANGE: [f32; 2] = [-87.0, 88.0];
 
@@ -27,6 +29,18 @@ pub(super) fn floor(x: f32) -> f32 {
     let nearest = f32::from_bits(((magnitude + INTEGERS) - INTEGERS).to_bits() | sign);
     let below = nearest - if nearest > x { 1.0 } else { 0.0 };
     if magnitude < INTEGERS { below } else { x }
+}
+
+/// Towards 0; saturates, and 0 where `x` is not a number: the bits of `x as i32`, which does not
+/// vectorise.
+#[inline(always)]
+pub(super) fn to_i32(x: f32) -> i32 {
+    const END: f32 = (1_u32 << 31) as f32;
+    let inside = if x.abs() < END { x } else { 0.0 };
+    // SAFETY: `inside` is a number of magnitude below 2³¹, so its integer part is an i32.
+    let integer = unsafe { inside.to_int_unchecked::<i32>() };
+    let integer = select_unpredictable(x >= END, i32::MAX, integer);
+    select_unpredictable(x <= -END, i32::MIN, integer)
 }
 
 /// e to the power: 2ⁿ eʳ with |r| ≤ ½ ln 2.
@@ -204,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn floor_has_the_bits_of_the_library() {
+    fn floor_and_truncation_have_the_bits_of_the_library() {
         for x in (0..=u32::MAX)
             .step_by(4999)
             .map(f32::from_bits)
