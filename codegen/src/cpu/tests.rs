@@ -301,10 +301,10 @@ fn nested(module: &mut Module) {
     let size = b.param("size", Type::U32);
     let scale = b.param_f32("scale");
     let count = b.sub_u(size, index);
-    let state = b.fold(&inner, count, &[sum, turns], &[scale]);
-    // The two sums trade places.
-    b.result("sum", other);
-    b.result("other", state[0]);
+    let state = b.fold(&inner, count, &[other, turns], &[scale]);
+    // The second state becomes what the first was before the turn.
+    b.result("sum", state[0]);
+    b.result("other", sum);
     b.result("turns", state[1]);
     let outer = b.finish(module);
 
