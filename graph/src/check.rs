@@ -123,7 +123,10 @@ impl InputView for View<'_> {
     fn flag(&self, port: &str) -> bool {
         match self.node.literal(port) {
             Literal::Boolean(flag) => *flag,
-            other => panic!("{port} of {} is no truth value: {other:?}", self.node.spec.name),
+            other => panic!(
+                "{port} of {} is no truth value: {other:?}",
+                self.node.spec.name
+            ),
         }
     }
 
@@ -148,7 +151,10 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
     let mut incoming = Vec::new();
     for (index, node) in graph.nodes.iter().enumerate() {
         let id = NodeId(u32::try_from(index).expect("at most a million nodes"));
-        let behaviour = (node.spec.class)(&View { node, signals: &signals });
+        let behaviour = (node.spec.class)(&View {
+            node,
+            signals: &signals,
+        });
         incoming.clear();
         for (port, input) in node.spec.inputs.iter().zip(&node.inputs) {
             if varies(&signals, input) {
@@ -173,14 +179,25 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
                 let help = "allow sampling, or use a node that has statistics";
                 Diagnostic::error("unknown-statistics", message).help(help)
             };
-            let diagnostic = diagnostic.at(&*node.pointer).in_node(&*node.name).because(reason);
-            let list = if options.allow_sampling { &mut warnings } else { &mut errors };
+            let diagnostic = diagnostic
+                .at(&*node.pointer)
+                .in_node(&*node.name)
+                .because(reason);
+            let list = if options.allow_sampling {
+                &mut warnings
+            } else {
+                &mut errors
+            };
             list.push(diagnostic);
         }
         warnings.extend(diagonal_position(&graph, node, behaviour));
     }
     if errors.is_empty() {
-        Ok(Checked { graph, signals, warnings })
+        Ok(Checked {
+            graph,
+            signals,
+            warnings,
+        })
     } else {
         errors.extend(warnings);
         Err(errors)
@@ -194,11 +211,15 @@ fn diagonal_position(graph: &Graph, node: &Node, behaviour: Behaviour) -> Option
     }
     let ports = node.spec.inputs.iter().zip(&node.inputs);
     for (port, input) in ports {
-        let Source::Node(source) = input.source else { continue };
+        let Source::Node(source) = input.source else {
+            continue;
+        };
         if port.unit == "uv" && input.ty.components() > 1 && input.from.components() == 1 {
             let source = &graph.node(source).name;
-            let message =
-                format!("`{}` of `{}` is a position, but `{source}` is one number", port.name, node.name);
+            let message = format!(
+                "`{}` of `{}` is a position, but `{source}` is one number",
+                port.name, node.name
+            );
             return Some(
                 Diagnostic::warning("diagonal-position", message)
                     .at(format!("{}/inputs/{}", node.pointer, port.name))

@@ -67,27 +67,43 @@ impl Diagnostic {
 
     /// A warning without a place.
     pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(code, message) }
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
     }
 
     /// The same at a JSON pointer.
     pub fn at(self, pointer: impl Into<String>) -> Self {
-        Self { pointer: Some(pointer.into()), ..self }
+        Self {
+            pointer: Some(pointer.into()),
+            ..self
+        }
     }
 
     /// The same at a line and a column of the text.
     pub fn at_line(self, line: u32, column: u32) -> Self {
-        Self { line: Some(line), column: Some(column), ..self }
+        Self {
+            line: Some(line),
+            column: Some(column),
+            ..self
+        }
     }
 
     /// The same in a node.
     pub fn in_node(self, node: impl Into<String>) -> Self {
-        Self { node: Some(node.into()), ..self }
+        Self {
+            node: Some(node.into()),
+            ..self
+        }
     }
 
     /// The same in an input of the node.
     pub fn in_port(self, port: impl Into<String>) -> Self {
-        Self { port: Some(port.into()), ..self }
+        Self {
+            port: Some(port.into()),
+            ..self
+        }
     }
 
     /// The same with one more reason.
@@ -98,7 +114,10 @@ impl Diagnostic {
 
     /// The same with a help line.
     pub fn help(self, help: impl Into<String>) -> Self {
-        Self { help: Some(help.into()), ..self }
+        Self {
+            help: Some(help.into()),
+            ..self
+        }
     }
 
     /// The same with a help line, if there is one.
@@ -116,7 +135,10 @@ impl Diagnostic {
 
     /// The text for people, with the name of the file that the document was read from.
     pub fn in_file<'a>(&'a self, file: &'a str) -> impl fmt::Display + 'a {
-        Shown { diagnostic: self, file: Some(file) }
+        Shown {
+            diagnostic: self,
+            file: Some(file),
+        }
     }
 }
 
@@ -142,7 +164,11 @@ impl fmt::Display for Shown<'_> {
             }
             match (&diagnostic.pointer, position) {
                 (Some(pointer), Some((line, column))) => {
-                    write!(f, " {} (line {line}, column {column})", shown_pointer(pointer))?;
+                    write!(
+                        f,
+                        " {} (line {line}, column {column})",
+                        shown_pointer(pointer)
+                    )?;
                 }
                 (Some(pointer), None) => write!(f, " {}", shown_pointer(pointer))?,
                 (None, Some((line, column))) => write!(f, " line {line}, column {column}")?,
@@ -161,12 +187,20 @@ impl fmt::Display for Shown<'_> {
 
 /// The pointer of the whole document is empty, which nobody would see.
 fn shown_pointer(pointer: &str) -> &str {
-    if pointer.is_empty() { "(the document)" } else { pointer }
+    if pointer.is_empty() {
+        "(the document)"
+    } else {
+        pointer
+    }
 }
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Shown { diagnostic: self, file: None }.fmt(f)
+        Shown {
+            diagnostic: self,
+            file: None,
+        }
+        .fmt(f)
     }
 }
 

@@ -93,7 +93,10 @@ pub struct Reference {
 impl Reference {
     /// The output `out` of a node.
     pub fn new(node: impl Into<String>) -> Self {
-        Self { node: node.into(), output: "out".to_owned() }
+        Self {
+            node: node.into(),
+            output: "out".to_owned(),
+        }
     }
 }
 

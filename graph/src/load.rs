@@ -21,7 +21,11 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
     let mut tree = match Tree::parse(text) {
         Ok(tree) => tree,
         Err(diagnostic) => {
-            return Loaded { document: None, graph: None, diagnostics: vec![diagnostic] };
+            return Loaded {
+                document: None,
+                graph: None,
+                diagnostics: vec![diagnostic],
+            };
         }
     };
     let (document, mut diagnostics) = Document::from_tree(text, &mut tree);
@@ -30,7 +34,10 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
         // Without the nodes, every reference would be reported.
         let sections = ["/nodes", "/inputs", "/graphs"];
         let lost = diagnostics.iter().any(|diagnostic| {
-            diagnostic.pointer.as_deref().is_some_and(|pointer| sections.contains(&pointer))
+            diagnostic
+                .pointer
+                .as_deref()
+                .is_some_and(|pointer| sections.contains(&pointer))
         });
         if !lost {
             let failed = !diagnostics.is_empty();
@@ -42,14 +49,20 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
         }
     }
     diagnostics.sort_by_key(|diagnostic| (diagnostic.line, diagnostic.column));
-    Loaded { document, graph, diagnostics }
+    Loaded {
+        document,
+        graph,
+        diagnostics,
+    }
 }
 
 /// What resolving found, less what only follows from a mistake of structure: anything in a value of
 /// the wrong JSON type, and anything that has a mistake of structure inside.
 fn without_consequences(structure: &[Diagnostic], found: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let pointers: BTreeSet<&str> =
-        structure.iter().filter_map(|diagnostic| diagnostic.pointer.as_deref()).collect();
+    let pointers: BTreeSet<&str> = structure
+        .iter()
+        .filter_map(|diagnostic| diagnostic.pointer.as_deref())
+        .collect();
     let wrong: BTreeSet<&str> = structure
         .iter()
         .filter(|diagnostic| diagnostic.code == "wrong-json-type")
@@ -59,7 +72,9 @@ fn without_consequences(structure: &[Diagnostic], found: Vec<Diagnostic>) -> Vec
         return found;
     }
     let follows = |diagnostic: &Diagnostic| {
-        let Some(pointer) = diagnostic.pointer.as_deref() else { return false };
+        let Some(pointer) = diagnostic.pointer.as_deref() else {
+            return false;
+        };
         let inside = format!("{pointer}/");
         let inner = pointers.range(inside.as_str()..).next();
         let ends = pointer.match_indices('/').map(|(end, _)| &pointer[..end]);
@@ -67,5 +82,8 @@ fn without_consequences(structure: &[Diagnostic], found: Vec<Diagnostic>) -> Vec
             || inner.is_some_and(|inner| inner.starts_with(&inside))
             || ends.into_iter().any(|outer| wrong.contains(outer))
     };
-    found.into_iter().filter(|diagnostic| !follows(diagnostic)).collect()
+    found
+        .into_iter()
+        .filter(|diagnostic| !follows(diagnostic))
+        .collect()
 }

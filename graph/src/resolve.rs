@@ -64,19 +64,26 @@ struct Context<'s> {
 
 impl<'s> Context<'s> {
     fn new(specs: &'s [&'static NodeSpec]) -> Self {
-        let by_name = specs.iter().enumerate().map(|(index, spec)| (spec.name, index)).collect();
+        let by_name = specs
+            .iter()
+            .enumerate()
+            .map(|(index, spec)| (spec.name, index))
+            .collect();
         Self {
             specs,
             by_name,
             diagnostics: Vec::new(),
             reported: FxHashSet::default(),
-            comparisons: 2_000_000,
+            comparisons: 300_000,
         }
     }
 
     /// Reports, unless the same was reported at the same place.
     fn report(&mut self, diagnostic: Diagnostic) {
-        if self.reported.insert((diagnostic.code, diagnostic.pointer.clone())) {
+        if self
+            .reported
+            .insert((diagnostic.code, diagnostic.pointer.clone()))
+        {
             self.diagnostics.push(diagnostic);
         }
     }
@@ -99,7 +106,9 @@ impl<'s> Context<'s> {
             .iter()
             .flat_map(|spec| spec.aliases.iter().map(|alias| (*alias, spec.name)));
         let all: Vec<(&str, &str)> = names.chain(aliases).collect();
-        let exact = all.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+        let exact = all
+            .iter()
+            .find(|(known, _)| known.eq_ignore_ascii_case(name));
         if let Some((alias, spec)) = exact {
             return Some(if alias == spec {
                 format!("did you mean `{spec}`?")

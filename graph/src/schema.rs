@@ -41,7 +41,10 @@ pub fn schema(specs: &[&'static NodeSpec]) -> Value {
     properties.insert("$schema".to_owned(), json!({ "type": "string" }));
     properties.insert("version".to_owned(), json!({ "const": VERSION }));
     let name = "The generated functions are named after it.";
-    properties.insert("name".to_owned(), json!({ "type": "string", "description": name }));
+    properties.insert(
+        "name".to_owned(),
+        json!({ "type": "string", "description": name }),
+    );
     properties.insert(
         "graphs".to_owned(),
         json!({
@@ -142,7 +145,10 @@ fn definitions() -> Map<String, Value> {
             },
         }),
     );
-    let types = Type::ALL.into_iter().filter(|ty| ty.components() > 0).map(Type::name);
+    let types = Type::ALL
+        .into_iter()
+        .filter(|ty| ty.components() > 0)
+        .map(Type::name);
     let types: Vec<&str> = types.collect();
     put(
         "input",
@@ -175,7 +181,10 @@ fn definitions() -> Map<String, Value> {
 }
 
 fn node(spec: &NodeSpec) -> Value {
-    let ports = spec.inputs.iter().map(|input| (input.name.to_owned(), port(input)));
+    let ports = spec
+        .inputs
+        .iter()
+        .map(|input| (input.name.to_owned(), port(input)));
     let ports: Map<String, Value> = ports.collect();
     let output = match spec.output {
         OutputType::Exactly(ty) => ty.name(),
@@ -236,7 +245,11 @@ fn port(port: &PortSpec) -> Value {
         literals.push(json!({ "$ref": "#/$defs/connection" }));
         literals.push(json!({ "$ref": "#/$defs/interface" }));
     }
-    let unit = if port.unit == "dimensionless" { String::new() } else { format!(" [{}]", port.unit) };
+    let unit = if port.unit == "dimensionless" {
+        String::new()
+    } else {
+        format!(" [{}]", port.unit)
+    };
     let mut schema = json!({ "description": format!("{}{unit}", port.doc), "anyOf": literals });
     if let Some(default) = default(port) {
         schema["default"] = default;
@@ -255,7 +268,9 @@ fn default(port: &PortSpec) -> Option<Value> {
         Default::Choice(name) => name.into(),
         Default::Stops(stops) => {
             let stops = stops.iter();
-            stops.map(|(at, x)| json!({ "at": decimal(*at), "value": decimal(*x) })).collect()
+            stops
+                .map(|(at, x)| json!({ "at": decimal(*at), "value": decimal(*x) }))
+                .collect()
         }
         Default::Surface => return None,
     })
@@ -264,5 +279,8 @@ fn default(port: &PortSpec) -> Option<Value> {
 /// The shortest decimal number that is this f32; whole numbers without a fraction.
 fn decimal(number: f32) -> Value {
     let text = number.to_string();
-    text.parse::<i64>().map_or_else(|_| text.parse::<f64>().map_or(Value::Null, Value::from), Value::from)
+    text.parse::<i64>().map_or_else(
+        |_| text.parse::<f64>().map_or(Value::Null, Value::from),
+        Value::from,
+    )
 }

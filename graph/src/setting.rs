@@ -45,7 +45,11 @@ impl fmt::Display for SettingError {
                 write!(f, "`{text}` is no `{ty}`: write {form}")
             }
             Self::OutOfRange { number, min, max } => {
-                write!(f, "{number} is out of range: {} is wanted", shown_bounds(*min, *max))
+                write!(
+                    f,
+                    "{number} is out of range: {} is wanted",
+                    shown_bounds(*min, *max)
+                )
             }
         }
     }
@@ -71,13 +75,20 @@ pub fn parse_setting(ty: Type, text: &str) -> Result<Literal, SettingError> {
         },
         _ => {
             let numbers = trimmed.split(',').map(|number| {
-                number.trim().parse::<f32>().ok().filter(|number| number.is_finite())
+                number
+                    .trim()
+                    .parse::<f32>()
+                    .ok()
+                    .filter(|number| number.is_finite())
             });
             let numbers: Option<Vec<f32>> = numbers.collect();
             numbers.and_then(|numbers| from_numbers(&numbers, ty))
         }
     };
-    value.ok_or_else(|| SettingError::NotOfType { text: text.to_owned(), ty })
+    value.ok_or_else(|| SettingError::NotOfType {
+        text: text.to_owned(),
+        ty,
+    })
 }
 
 impl Parameter {
@@ -88,9 +99,11 @@ impl Parameter {
     pub fn parse(&self, text: &str) -> Result<Literal, SettingError> {
         let value = parse_setting(self.ty, text)?;
         match outside(&value.numbers(), self.min, self.max) {
-            Some(number) => {
-                Err(SettingError::OutOfRange { number, min: self.min, max: self.max })
-            }
+            Some(number) => Err(SettingError::OutOfRange {
+                number,
+                min: self.min,
+                max: self.max,
+            }),
             None => Ok(value),
         }
     }
@@ -111,7 +124,10 @@ mod tests {
             parse_setting(Type::Color4, "#ffffff"),
             Ok(Literal::Numbers(Type::Color4, [1.0; 4]))
         );
-        assert_eq!(parse_setting(Type::Boolean, "true"), Ok(Literal::Boolean(true)));
+        assert_eq!(
+            parse_setting(Type::Boolean, "true"),
+            Ok(Literal::Boolean(true))
+        );
         for (ty, text) in [
             (Type::Float, "nan"),
             (Type::Float, "1e39"),
@@ -138,6 +154,9 @@ mod tests {
         };
         assert_eq!(input.parse("2"), Ok(Literal::float(2.0)));
         let error = input.parse("0.25").expect_err("too small");
-        assert_eq!(error.to_string(), "0.25 is out of range: at least 0.5 is wanted");
+        assert_eq!(
+            error.to_string(),
+            "0.25 is out of range: at least 0.5 is wanted"
+        );
     }
 }

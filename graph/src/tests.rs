@@ -11,8 +11,14 @@ use crate::{Diagnostic, Graph, load};
 /// The graph of a valid document.
 fn graph(text: &str) -> Graph {
     let loaded = load(text, SPECS);
-    let shown: Vec<String> = loaded.diagnostics.iter().map(Diagnostic::to_string).collect();
-    loaded.graph.unwrap_or_else(|| panic!("{}", shown.join("\n")))
+    let shown: Vec<String> = loaded
+        .diagnostics
+        .iter()
+        .map(Diagnostic::to_string)
+        .collect();
+    loaded
+        .graph
+        .unwrap_or_else(|| panic!("{}", shown.join("\n")))
 }
 
 /// A chain of that many nodes.

@@ -114,7 +114,11 @@ impl Incoming {
             port,
             node: None,
             class: Class::Gaussian { deviation: 0.0 },
-            entries: Entries::one(Entry { node: None, rank: 2, position: true }),
+            entries: Entries::one(Entry {
+                node: None,
+                rank: 2,
+                position: true,
+            }),
             sources: Sources::surface(),
             error: 0.0,
         }
@@ -201,7 +205,10 @@ impl Reason {
                 from()
             ),
             Self::MomentsIn(port) => {
-                format!("of `{port}` of `{name}`, {}, only mean and covariance are known", from())
+                format!(
+                    "of `{port}` of `{name}`, {}, only mean and covariance are known",
+                    from()
+                )
             }
             Self::UnknownIn(port) => format!("`{port}` of `{name}`, {}, has no statistics", from()),
             Self::NoStatistics(reason) => format!("`{name}` has no statistics: {reason}"),
@@ -220,7 +227,13 @@ struct Outcome {
 
 impl Outcome {
     fn new(class: Class, reason: Reason) -> Self {
-        Self { class, reason, decided_by: None, entries: Entries::default(), error: 0.0 }
+        Self {
+            class,
+            reason,
+            decided_by: None,
+            entries: Entries::default(),
+            error: 0.0,
+        }
     }
 
     fn by(self, decided_by: Option<NodeId>) -> Self {
@@ -244,7 +257,11 @@ pub(super) fn signal(
     for (i, first) in incoming.iter().enumerate() {
         for second in &incoming[i + 1..] {
             if let Some(source) = first.sources.common(&second.sources) {
-                correlations.push(Correlation { first: first.port, second: second.port, source });
+                correlations.push(Correlation {
+                    first: first.port,
+                    second: second.port,
+                    source,
+                });
             }
         }
     }
@@ -266,8 +283,22 @@ pub(super) fn signal(
         sources = Sources::default();
         outcome.entries = Entries::default();
     }
-    let Outcome { class, reason, decided_by, entries, error } = outcome;
-    Signal { class, sources, correlations, error, reason, decided_by, entries }
+    let Outcome {
+        class,
+        reason,
+        decided_by,
+        entries,
+        error,
+    } = outcome;
+    Signal {
+        class,
+        sources,
+        correlations,
+        error,
+        reason,
+        decided_by,
+        entries,
+    }
 }
 
 fn outcome(id: NodeId, node: &Node, behaviour: Behaviour, incoming: &[Incoming]) -> Outcome {
@@ -276,7 +307,9 @@ fn outcome(id: NodeId, node: &Node, behaviour: Behaviour, incoming: &[Incoming])
     match behaviour {
         Behaviour::Unknown(reason) => Outcome::new(Class::Unknown, Reason::NoStatistics(reason)),
         _ if unknown.is_some() => {
-            let (port, by) = unknown.map(|input| (input.port, input.node)).unwrap_or_default();
+            let (port, by) = unknown
+                .map(|input| (input.port, input.node))
+                .unwrap_or_default();
             Outcome::new(Class::Unknown, Reason::UnknownIn(port)).by(by)
         }
         Behaviour::Constant => Outcome::new(Class::Constant, Reason::NothingVaries),
@@ -292,11 +325,11 @@ fn outcome(id: NodeId, node: &Node, behaviour: Behaviour, incoming: &[Incoming])
             }
         },
         Behaviour::Pattern => match displaced(incoming) {
-            None => {
-                Outcome::new(Class::Function { gaussians: 0 }, Reason::Pattern)
-            }
+            None => Outcome::new(Class::Function { gaussians: 0 }, Reason::Pattern),
             Some(by) => {
-                let class = Class::Moments { deviation: FUNCTION_DEVIATION };
+                let class = Class::Moments {
+                    deviation: FUNCTION_DEVIATION,
+                };
                 let outcome = Outcome::new(class, Reason::WarpedPattern(by.port)).by(by.node);
                 outcome.error(together(by.error, CLOSED))
             }
@@ -318,13 +351,19 @@ fn displaced(incoming: &[Incoming]) -> Option<&Incoming> {
 
 fn gaussian(id: NodeId, deviation: f32, rank: u8, position: bool, reason: Reason) -> Outcome {
     let mut outcome = Outcome::new(Class::Gaussian { deviation }, reason);
-    outcome.entries = Entries::one(Entry { node: Some(id), rank, position });
+    outcome.entries = Entries::one(Entry {
+        node: Some(id),
+        rank,
+        position,
+    });
     outcome
 }
 
 /// The entries of all inputs together, if they hold at most two Gaussian numbers.
 fn together_entries(incoming: &[Incoming]) -> Option<Entries> {
-    incoming.iter().try_fold(Entries::default(), |all, input| all.with(input.entries))
+    incoming
+        .iter()
+        .try_fold(Entries::default(), |all, input| all.with(input.entries))
 }
 
 fn is_pattern(input: &Incoming) -> bool {
@@ -343,19 +382,29 @@ fn largest(incoming: &[Incoming], of: impl Fn(&Incoming) -> f32) -> f32 {
 fn linear(id: NodeId, components: u8, incoming: &[Incoming]) -> Outcome {
     let error = largest(incoming, |input| input.error);
     let by = worst(incoming).and_then(|input| input.node);
-    if let Some(input) = incoming.iter().find(|input| matches!(input.class, Class::Moments { .. })) {
+    if let Some(input) = incoming
+        .iter()
+        .find(|input| matches!(input.class, Class::Moments { .. }))
+    {
         let deviation = largest(incoming, Incoming::deviation);
         let reason = Reason::MomentsIn(input.port);
-        return Outcome::new(Class::Moments { deviation }, reason).by(input.node).error(error);
+        return Outcome::new(Class::Moments { deviation }, reason)
+            .by(input.node)
+            .error(error);
     }
-    if incoming.iter().all(|input| matches!(input.class, Class::Gaussian { .. })) {
+    if incoming
+        .iter()
+        .all(|input| matches!(input.class, Class::Gaussian { .. }))
+    {
         let deviation = largest(incoming, Incoming::deviation);
         let numbers: u8 = incoming
             .iter()
             .map(|input| input.entries.rank())
             .fold(0, u8::saturating_add)
             .min(components);
-        let position = incoming.iter().all(|input| input.sources.nodes().is_empty());
+        let position = incoming
+            .iter()
+            .all(|input| input.sources.nodes().is_empty());
         let mut outcome =
             gaussian(id, deviation, numbers, position, Reason::LinearOfGaussians).by(by);
         // An affine function of one Gaussian is the same Gaussian to what follows.
@@ -368,24 +417,32 @@ fn linear(id: NodeId, components: u8, incoming: &[Incoming]) -> Outcome {
     }
     if let [input] = incoming {
         // An affine function changes nothing.
-        let mut outcome = Outcome::new(input.class, Reason::LinearOfFunction).by(by).error(error);
+        let mut outcome = Outcome::new(input.class, Reason::LinearOfFunction)
+            .by(by)
+            .error(error);
         outcome.entries = input.entries;
         return outcome;
     }
     match together_entries(incoming) {
         Some(entries) if entries.rank() == 1 && !incoming.iter().any(is_pattern) => {
             let class = Class::Function { gaussians: 1 };
-            let mut outcome = Outcome::new(class, Reason::LinearOfFunction).by(by).error(error);
+            let mut outcome = Outcome::new(class, Reason::LinearOfFunction)
+                .by(by)
+                .error(error);
             outcome.entries = entries;
             outcome
         }
         _ => {
             let deviation = largest(incoming, Incoming::deviation);
             // Patterns and positions are exact, and so are their sums.
-            let exact = incoming.iter().all(|input| {
-                is_pattern(input) || matches!(input.class, Class::Gaussian { .. })
-            });
-            let error = if exact { error } else { together(error, SUMMED) };
+            let exact = incoming
+                .iter()
+                .all(|input| is_pattern(input) || matches!(input.class, Class::Gaussian { .. }));
+            let error = if exact {
+                error
+            } else {
+                together(error, SUMMED)
+            };
             Outcome::new(Class::Moments { deviation }, Reason::LinearOfFunctions)
                 .by(by)
                 .error(error)
@@ -396,7 +453,9 @@ fn linear(id: NodeId, components: u8, incoming: &[Incoming]) -> Outcome {
 fn function(incoming: &[Incoming], deviation: f32) -> Outcome {
     let by = worst(incoming).and_then(|input| input.node);
     let error = largest(incoming, |input| input.error);
-    let moments = incoming.iter().find(|input| matches!(input.class, Class::Moments { .. }));
+    let moments = incoming
+        .iter()
+        .find(|input| matches!(input.class, Class::Moments { .. }));
     if let Some(input) = moments {
         let deviation = largest(incoming, Incoming::deviation).max(deviation);
         let outcome = Outcome::new(Class::Moments { deviation }, Reason::MomentsIn(input.port));
@@ -419,7 +478,9 @@ fn function(incoming: &[Incoming], deviation: f32) -> Outcome {
             } else {
                 FUSED_TWO
             };
-            let own = incoming.iter().filter(|input| matches!(input.class, Class::Gaussian { .. }));
+            let own = incoming
+                .iter()
+                .filter(|input| matches!(input.class, Class::Gaussian { .. }));
             let own = own.map(Incoming::deviation).fold(0.0, f32::max);
             let mut outcome =
                 Outcome::new(Class::Function { gaussians }, Reason::FunctionOfGaussians)

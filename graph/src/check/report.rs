@@ -53,8 +53,13 @@ impl Checked {
 
     fn source_names(&self, id: NodeId) -> Vec<&str> {
         let sources = &self.signal(id).sources;
-        let nodes = sources.nodes().iter().map(|node| self.source_name(Some(*node)));
-        nodes.chain(sources.position().then_some("(position)")).collect()
+        let nodes = sources
+            .nodes()
+            .iter()
+            .map(|node| self.source_name(Some(*node)));
+        nodes
+            .chain(sources.position().then_some("(position)"))
+            .collect()
     }
 
     /// The text of `check`, one paragraph a signal.
@@ -65,7 +70,10 @@ impl Checked {
 
 /// The decimal number with the fewest digits that is this f32, as f64 of the same digits.
 fn shortest(number: f32) -> Value {
-    number.to_string().parse::<f64>().map_or(Value::Null, Value::from)
+    number
+        .to_string()
+        .parse::<f64>()
+        .map_or(Value::Null, Value::from)
 }
 
 struct Report<'a>(&'a Checked);
@@ -73,11 +81,14 @@ struct Report<'a>(&'a Checked);
 impl fmt::Display for Report<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let checked = self.0;
-        for (index, (node, signal)) in
-            checked.graph.nodes.iter().zip(&checked.signals).enumerate()
+        for (index, (node, signal)) in checked.graph.nodes.iter().zip(&checked.signals).enumerate()
         {
             let id = NodeId(index as u32);
-            writeln!(f, "{} ({}, {}): {}", node.name, node.spec.name, node.ty, signal.class)?;
+            writeln!(
+                f,
+                "{} ({}, {}): {}",
+                node.name, node.spec.name, node.ty, signal.class
+            )?;
             for reason in checked.because(id) {
                 writeln!(f, "  because {reason}")?;
             }
@@ -89,7 +100,10 @@ impl fmt::Display for Report<'_> {
             for correlation in &signal.correlations {
                 let source = checked.source_name(correlation.source);
                 let (first, second) = (correlation.first, correlation.second);
-                writeln!(f, "  carries cov({first}, {second}): both depend on {source}")?;
+                writeln!(
+                    f,
+                    "  carries cov({first}, {second}): both depend on {source}"
+                )?;
             }
             if signal.error > 0.0 {
                 writeln!(f, "  predicted closure error: {:.3} RMS", signal.error)?;

@@ -19,12 +19,20 @@ pub struct Sources {
 impl Sources {
     /// One node.
     pub(super) fn of(node: NodeId) -> Self {
-        Self { nodes: Some(Arc::new([node])), position: false, more: false }
+        Self {
+            nodes: Some(Arc::new([node])),
+            position: false,
+            more: false,
+        }
     }
 
     /// The position.
     pub(super) fn surface() -> Self {
-        Self { nodes: None, position: true, more: false }
+        Self {
+            nodes: None,
+            position: true,
+            more: false,
+        }
     }
 
     /// The nodes, at most 16 of them, in their order.
@@ -47,25 +55,42 @@ impl Sources {
         let position = self.position || other.position;
         let more = self.more || other.more;
         let within = |part: &Self, whole: &Self| {
-            part.nodes().iter().all(|node| whole.nodes().binary_search(node).is_ok())
+            part.nodes()
+                .iter()
+                .all(|node| whole.nodes().binary_search(node).is_ok())
         };
         if within(other, &self) {
-            return Self { position, more, ..self };
+            return Self {
+                position,
+                more,
+                ..self
+            };
         }
         if within(&self, other) {
-            return Self { nodes: other.nodes.clone(), position, more };
+            return Self {
+                nodes: other.nodes.clone(),
+                position,
+                more,
+            };
         }
         let mut all = [self.nodes(), other.nodes()].concat();
         all.sort_unstable();
         all.dedup();
         let more = more || all.len() > LISTED;
         all.truncate(LISTED);
-        Self { nodes: Some(all.into()), position, more }
+        Self {
+            nodes: Some(all.into()),
+            position,
+            more,
+        }
     }
 
     /// A source that both list: a node, or `Some(None)` for the position.
     pub(super) fn common(&self, other: &Self) -> Option<Option<NodeId>> {
-        let node = self.nodes().iter().find(|node| other.nodes().binary_search(node).is_ok());
+        let node = self
+            .nodes()
+            .iter()
+            .find(|node| other.nodes().binary_search(node).is_ok());
         match node {
             Some(node) => Some(Some(*node)),
             None => (self.position && other.position).then_some(None),
@@ -81,7 +106,10 @@ mod tests {
     fn unions_are_shared_and_capped() {
         let one = Sources::of(NodeId(7));
         let again = one.clone().with(&Sources::of(NodeId(7)));
-        assert!(Arc::ptr_eq(one.nodes.as_ref().unwrap(), again.nodes.as_ref().unwrap()));
+        assert!(Arc::ptr_eq(
+            one.nodes.as_ref().unwrap(),
+            again.nodes.as_ref().unwrap()
+        ));
         let mut all = one;
         for i in 0..40 {
             all = all.with(&Sources::of(NodeId(i)));

@@ -8,11 +8,13 @@ use super::{Binding, Body, Document, InputEntry, Map, NodeEntry, Reference, VERS
 use crate::Diagnostic;
 use crate::diagnostic::{did_you_mean, escape};
 
-const DOCUMENT: &[&str] =
-    &["$schema", "version", "name", "doc", "inputs", "nodes", "outputs", "graphs", "extra"];
+const DOCUMENT: &[&str] = &[
+    "$schema", "version", "name", "doc", "inputs", "nodes", "outputs", "graphs", "extra",
+];
 const GRAPH: &[&str] = &["doc", "inputs", "nodes", "outputs", "extra"];
-const INPUT: &[&str] =
-    &["type", "value", "min", "max", "soft_min", "soft_max", "doc", "extra"];
+const INPUT: &[&str] = &[
+    "type", "value", "min", "max", "soft_min", "soft_max", "doc", "extra",
+];
 const NODE: &[&str] = &["type", "inputs", "doc", "extra"];
 const REFERENCE: &[&str] = &["node", "output"];
 const BINDING: &[&str] = &["node", "output", "input"];
@@ -49,7 +51,12 @@ struct Reader<'t> {
 
 impl<'t> Reader<'t> {
     fn new(text: &'t str) -> Self {
-        Self { text, lines: None, path: Vec::new(), diagnostics: Vec::new() }
+        Self {
+            text,
+            lines: None,
+            path: Vec::new(),
+            diagnostics: Vec::new(),
+        }
     }
 
     /// Reports a mistake at the current path, which lies at this byte.
@@ -74,7 +81,8 @@ impl<'t> Reader<'t> {
         let text = self.text;
         let lines = self.lines.get_or_insert_with(|| Lines::new(text));
         let (line, column) = lines.position(at);
-        self.diagnostics.push(diagnostic.at(pointer).at_line(line, column));
+        self.diagnostics
+            .push(diagnostic.at(pointer).at_line(line, column));
     }
 
     /// Does something one step deeper.
@@ -111,14 +119,18 @@ impl<'t> Reader<'t> {
             if duplicate {
                 let message = format!("the key `{key}` is written twice");
                 let diagnostic = Diagnostic::error("duplicate-key", message);
-                self.within(Segment::Key(key), |reader| reader.report(member.key_at, diagnostic));
+                self.within(Segment::Key(key), |reader| {
+                    reader.report(member.key_at, diagnostic)
+                });
                 continue;
             }
             if !known.is_empty() && !known.contains(&key) {
                 let help = did_you_mean(key, known.iter().copied());
                 let message = format!("the key `{key}` is not known here");
                 let diagnostic = Diagnostic::error("unknown-key", message).help_if(help);
-                self.within(Segment::Key(key), |reader| reader.report(member.key_at, diagnostic));
+                self.within(Segment::Key(key), |reader| {
+                    reader.report(member.key_at, diagnostic)
+                });
                 // It counts as seen, so that writing it twice is reported too.
             }
             kept.push(member);
@@ -133,14 +145,18 @@ impl<'t> Reader<'t> {
         read: impl FnOnce(&mut Self, &'t Tree) -> T,
     ) -> Option<T> {
         let member = members.iter().find(|member| member.key == key)?;
-        Some(self.within(Segment::Key(&member.key), |reader| read(reader, &member.tree)))
+        Some(self.within(Segment::Key(&member.key), |reader| {
+            read(reader, &member.tree)
+        }))
     }
 
     /// The pointer names the member that is not there.
     fn missing(&mut self, tree: &Tree, key: &'static str, help: &str) {
         let message = format!("the key `{key}` is missing");
         let diagnostic = Diagnostic::error("missing-key", message).help(help);
-        self.within(Segment::Key(key), |reader| reader.report(tree.at, diagnostic));
+        self.within(Segment::Key(key), |reader| {
+            reader.report(tree.at, diagnostic)
+        });
     }
 
     fn text(&mut self, tree: &'t Tree) -> Option<String> {
@@ -167,7 +183,9 @@ impl<'t> Reader<'t> {
     fn value(&mut self, tree: &'t Tree) -> Value {
         match &tree.value {
             Json::Number(number) => {
-                let finite = number.as_f64().is_some_and(|number| (number as f32).is_finite());
+                let finite = number
+                    .as_f64()
+                    .is_some_and(|number| (number as f32).is_finite());
                 if !finite {
                     let message = format!("{number} is not finite as a 32-bit float");
                     let diagnostic = Diagnostic::error("number-not-finite", message)
@@ -242,9 +260,12 @@ impl<'t> Reader<'t> {
                 Json::Number(number) => format!("version {number}"),
                 other => format!("a version that is {}", other.kind()),
             };
-            let message = format!("{shown} is not supported: it must be a whole number up to {VERSION}");
+            let message =
+                format!("{shown} is not supported: it must be a whole number up to {VERSION}");
             let help = match version {
-                Some(_) => "the document was written for a later release; update this one".to_owned(),
+                Some(_) => {
+                    "the document was written for a later release; update this one".to_owned()
+                }
                 None => format!("write `\"version\": {VERSION}`"),
             };
             let diagnostic = Diagnostic::error("unsupported-version", message).help(help);
@@ -255,16 +276,20 @@ impl<'t> Reader<'t> {
 
     fn document(&mut self, tree: &'t Tree) -> Document {
         let mut document = Document::default();
-        let Some(members) = self.members(tree, DOCUMENT) else { return document };
+        let Some(members) = self.members(tree, DOCUMENT) else {
+            return document;
+        };
         if self.field(&members, "version", |_, _| ()).is_none() {
             let help = format!("write `\"version\": {VERSION}`");
             self.missing(tree, "version", &help);
         }
-        document.schema = self.field(&members, "$schema", |_, tree| match &tree.value {
-            // It is ignored, whatever it is.
-            Json::Text(text) => Some(text.clone()),
-            _ => None,
-        }).flatten();
+        document.schema = self
+            .field(&members, "$schema", |_, tree| match &tree.value {
+                // It is ignored, whatever it is.
+                Json::Text(text) => Some(text.clone()),
+                _ => None,
+            })
+            .flatten();
         match self.field(&members, "name", Self::text) {
             Some(name) => document.name = name.unwrap_or_default(),
             None => self.missing(tree, "name", "the generated functions are named after it"),
@@ -295,13 +320,21 @@ impl<'t> Reader<'t> {
 
     fn body(&mut self, tree: &'t Tree, members: &[&'t Member]) -> Body {
         let doc = self.field(members, "doc", Self::text).flatten();
-        let inputs = self.field(members, "inputs", |reader, tree| reader.map(tree, Self::input));
-        let nodes = self.field(members, "nodes", |reader, tree| reader.map(tree, Self::node));
+        let inputs = self.field(members, "inputs", |reader, tree| {
+            reader.map(tree, Self::input)
+        });
+        let nodes = self.field(members, "nodes", |reader, tree| {
+            reader.map(tree, Self::node)
+        });
         let outputs = self.field(members, "outputs", |reader, tree| {
             reader.map(tree, |reader, tree| reader.reference(tree))
         });
         if nodes.is_none() && tree.members().is_some() {
-            self.missing(tree, "nodes", "write `\"nodes\": { \"NAME\": { \"type\": … } }`");
+            self.missing(
+                tree,
+                "nodes",
+                "write `\"nodes\": { \"NAME\": { \"type\": … } }`",
+            );
         }
         if outputs.is_none() && tree.members().is_some() {
             let help = "write `\"outputs\": { \"base_color\": { \"node\": NAME } }`";
@@ -321,7 +354,9 @@ impl<'t> Reader<'t> {
     }
 
     fn input(&mut self, tree: &'t Tree) -> InputEntry {
-        let Some(members) = self.members(tree, INPUT) else { return InputEntry::default() };
+        let Some(members) = self.members(tree, INPUT) else {
+            return InputEntry::default();
+        };
         let ty = self.field(&members, "type", Self::text);
         if ty.is_none() {
             self.missing(tree, "type", "write `\"type\": \"float\"`, or another type");
@@ -343,13 +378,20 @@ impl<'t> Reader<'t> {
     }
 
     fn node(&mut self, tree: &'t Tree) -> NodeEntry {
-        let Some(members) = self.members(tree, NODE) else { return NodeEntry::default() };
+        let Some(members) = self.members(tree, NODE) else {
+            return NodeEntry::default();
+        };
         let ty = self.field(&members, "type", Self::text);
         if ty.is_none() {
-            self.missing(tree, "type", "write `\"type\": …` with the name of a node type");
+            self.missing(
+                tree,
+                "type",
+                "write `\"type\": …` with the name of a node type",
+            );
         }
-        let inputs =
-            self.field(&members, "inputs", |reader, tree| reader.map(tree, Self::binding));
+        let inputs = self.field(&members, "inputs", |reader, tree| {
+            reader.map(tree, Self::binding)
+        });
         NodeEntry {
             ty: ty.flatten().unwrap_or_default(),
             inputs: inputs.unwrap_or_default(),
@@ -359,8 +401,13 @@ impl<'t> Reader<'t> {
     }
 
     fn reference(&mut self, tree: &'t Tree) -> Reference {
-        let nothing = Reference { node: String::new(), output: "out".to_owned() };
-        let Some(members) = self.members(tree, REFERENCE) else { return nothing };
+        let nothing = Reference {
+            node: String::new(),
+            output: "out".to_owned(),
+        };
+        let Some(members) = self.members(tree, REFERENCE) else {
+            return nothing;
+        };
         let node = self.field(&members, "node", Self::text);
         if node.is_none() {
             self.missing(tree, "node", "write `{ \"node\": NAME }`");
@@ -390,7 +437,10 @@ impl<'t> Reader<'t> {
             _ => {
                 let message = "a connection names either a node or an input of the graph";
                 let help = "write `{ \"node\": NAME }` or `{ \"input\": NAME }`";
-                self.report(tree.at, Diagnostic::error("wrong-connection", message).help(help));
+                self.report(
+                    tree.at,
+                    Diagnostic::error("wrong-connection", message).help(help),
+                );
                 Binding::Value(Value::Null)
             }
         }

@@ -60,21 +60,29 @@ impl Tree {
     /// The one syntax error, with its line and column.
     pub(crate) fn parse(text: &str) -> Result<Self, Diagnostic> {
         let read = Cell::new(0);
-        let seed = Place { text: text.as_bytes(), read: &read };
+        let seed = Place {
+            text: text.as_bytes(),
+            read: &read,
+        };
         let mut deserializer = serde_json::Deserializer::from_reader(seed);
         let parsed = seed.deserialize(&mut deserializer);
-        parsed.and_then(|tree| deserializer.end().map(|()| tree)).map_err(|error| {
-            let whole = error.to_string();
-            let reason = whole.split(" at line ").next().unwrap_or(&whole);
-            let line = error.line().max(1);
-            let column = text.lines().nth(line - 1).map_or(1, |content| {
-                // serde_json counts bytes.
-                let bytes = error.column().saturating_sub(1).min(content.len());
-                String::from_utf8_lossy(&content.as_bytes()[..bytes]).chars().count() + 1
-            });
-            Diagnostic::error("syntax", format!("this is not JSON: {reason}"))
-                .at_line(small(line), small(column))
-        })
+        parsed
+            .and_then(|tree| deserializer.end().map(|()| tree))
+            .map_err(|error| {
+                let whole = error.to_string();
+                let reason = whole.split(" at line ").next().unwrap_or(&whole);
+                let line = error.line().max(1);
+                let column = text.lines().nth(line - 1).map_or(1, |content| {
+                    // serde_json counts bytes.
+                    let bytes = error.column().saturating_sub(1).min(content.len());
+                    String::from_utf8_lossy(&content.as_bytes()[..bytes])
+                        .chars()
+                        .count()
+                        + 1
+                });
+                Diagnostic::error("syntax", format!("this is not JSON: {reason}"))
+                    .at_line(small(line), small(column))
+            })
     }
 
     /// The members of an object.
@@ -101,7 +109,10 @@ impl Place<'_> {
         match read.checked_sub(1).map(|last| self.text[last]) {
             None | Some(b':') => {
                 let rest = &self.text[read..];
-                let blank = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+                let blank = rest
+                    .iter()
+                    .take_while(|byte| byte.is_ascii_whitespace())
+                    .count();
                 read + blank
             }
             Some(_) => read - 1,
@@ -199,23 +210,55 @@ impl<'de> DeserializeSeed<'de> for Key<'_> {
 /// Lines and columns of a text.
 pub(crate) struct Lines<'t> {
     text: &'t str,
-    starts: Vec<usize>,
+    marks: Vec<Mark>,
+}
+
+/// A byte whose line and column are known.
+struct Mark {
+    at: usize,
+    line: usize,
+    column: usize,
 }
 
 impl<'t> Lines<'t> {
-    /// Finds the lines.
+    /// Marks every line, and places within long ones: a document may be all on one line.
     pub(crate) fn new(text: &'t str) -> Self {
-        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
-        let starts = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
-        Self { text, starts }
+        const APART: usize = 256;
+        let mut marks = vec![Mark {
+            at: 0,
+            line: 1,
+            column: 1,
+        }];
+        let (mut line, mut column, mut marked) = (1, 1, 0);
+        for (at, character) in text.char_indices() {
+            if at - marked >= APART {
+                marks.push(Mark { at, line, column });
+                marked = at;
+            }
+            column += 1;
+            if character == '\n' {
+                line += 1;
+                column = 1;
+                marked = at + 1;
+                marks.push(Mark {
+                    at: marked,
+                    line,
+                    column,
+                });
+            }
+        }
+        Self { text, marks }
     }
 
     /// The line, and the column in characters, of a byte: both from 1.
     pub(crate) fn position(&self, at: usize) -> (u32, u32) {
-        let line = self.starts.partition_point(|start| *start <= at);
-        let before = &self.text.as_bytes()[self.starts[line - 1]..at];
-        let column = before.iter().filter(|byte| (**byte & 0xc0) != 0x80).count() + 1;
-        (small(line), small(column))
+        let mark = &self.marks[self.marks.partition_point(|mark| mark.at <= at) - 1];
+        let between = &self.text.as_bytes()[mark.at..at];
+        let characters = between
+            .iter()
+            .filter(|byte| (**byte & 0xc0) != 0x80)
+            .count();
+        (small(mark.line), small(mark.column + characters))
     }
 }
 
@@ -231,8 +274,13 @@ pub(crate) fn locate(text: &str, tree: &Tree, diagnostics: &mut [Diagnostic]) {
     }
     let lines = Lines::new(text);
     let mut index: FxHashMap<usize, FxHashMap<&str, usize>> = FxHashMap::default();
-    for diagnostic in diagnostics.iter_mut().filter(|diagnostic| without(diagnostic)) {
-        let Some(pointer) = diagnostic.pointer.as_deref() else { continue };
+    for diagnostic in diagnostics
+        .iter_mut()
+        .filter(|diagnostic| without(diagnostic))
+    {
+        let Some(pointer) = diagnostic.pointer.as_deref() else {
+            continue;
+        };
         let mut here = tree;
         // Where the pointer leads out of the document (a missing key), the parent is the place.
         for segment in pointer.split('/').skip(1) {
@@ -271,7 +319,9 @@ mod tests {
         assert_eq!(lines.position(tree.at), (1, 2));
         assert_eq!(lines.position(members[0].key_at), (2, 3));
         assert_eq!(lines.position(members[0].tree.at), (2, 9));
-        let Json::Array(items) = &members[0].tree.value else { panic!("an array") };
+        let Json::Array(items) = &members[0].tree.value else {
+            panic!("an array")
+        };
         let starts: Vec<u32> = items.iter().map(|item| lines.position(item.at).1).collect();
         assert_eq!(starts, [11, 15, 19]);
         assert_eq!(lines.position(members[1].key_at), (2, 24));
@@ -283,7 +333,14 @@ mod tests {
     #[test]
     fn a_thousand_times_too_deep_is_one_located_error() {
         let error = Tree::parse(&"[".repeat(10_000)).expect_err("too deep");
-        assert_eq!((error.code, error.line, error.column), ("syntax", Some(1), Some(128)));
-        assert!(error.message.contains("recursion limit"), "{}", error.message);
+        assert_eq!(
+            (error.code, error.line, error.column),
+            ("syntax", Some(1), Some(128))
+        );
+        assert!(
+            error.message.contains("recursion limit"),
+            "{}",
+            error.message
+        );
     }
 }

@@ -11,7 +11,10 @@ const STEPS: [Step; super::VERSION as usize] = [nodes_have_inputs];
 
 /// Upgrades a document of that version, which is not above the present one.
 pub(super) fn upgrade(tree: &mut Tree, version: u64) {
-    for step in STEPS.iter().skip(usize::try_from(version).unwrap_or(usize::MAX)) {
+    for step in STEPS
+        .iter()
+        .skip(usize::try_from(version).unwrap_or(usize::MAX))
+    {
         step(tree);
     }
 }
@@ -26,7 +29,9 @@ fn nodes_have_inputs(tree: &mut Tree) {
 
     fn rename(body: &mut Tree) {
         for node in values(body, "nodes") {
-            let Json::Object(members) = &mut node.value else { continue };
+            let Json::Object(members) = &mut node.value else {
+                continue;
+            };
             for member in members {
                 if member.key == "params" {
                     "inputs".clone_into(&mut member.key);
@@ -39,8 +44,12 @@ fn nodes_have_inputs(tree: &mut Tree) {
 /// The values of the object under that key; nothing where the document is not of that shape, which
 /// the reader reports.
 fn values<'t>(tree: &'t mut Tree, key: &'t str) -> impl Iterator<Item = &'t mut Tree> {
-    let outer = members(tree).iter_mut().filter(move |member| member.key == key);
-    outer.flat_map(|member| members(&mut member.tree)).map(|member| &mut member.tree)
+    let outer = members(tree)
+        .iter_mut()
+        .filter(move |member| member.key == key);
+    outer
+        .flat_map(|member| members(&mut member.tree))
+        .map(|member| &mut member.tree)
 }
 
 fn members(tree: &mut Tree) -> &mut [Member] {

@@ -39,12 +39,21 @@ fn any(json: &mut Map<String, Value>, key: &str, value: Option<&Value>) {
 fn fill(json: &mut Map<String, Value>, body: &Body) {
     text(json, "doc", body.doc.as_ref());
     if !body.inputs.is_empty() {
-        let inputs = body.inputs.iter().map(|(name, entry)| (name.clone(), input(entry)));
+        let inputs = body
+            .inputs
+            .iter()
+            .map(|(name, entry)| (name.clone(), input(entry)));
         json.insert("inputs".to_owned(), Value::Object(inputs.collect()));
     }
-    let nodes = body.nodes.iter().map(|(name, entry)| (name.clone(), node(entry)));
+    let nodes = body
+        .nodes
+        .iter()
+        .map(|(name, entry)| (name.clone(), node(entry)));
     json.insert("nodes".to_owned(), Value::Object(nodes.collect()));
-    let outputs = body.outputs.iter().map(|(name, entry)| (name.clone(), reference(entry)));
+    let outputs = body
+        .outputs
+        .iter()
+        .map(|(name, entry)| (name.clone(), reference(entry)));
     json.insert("outputs".to_owned(), Value::Object(outputs.collect()));
     any(json, "extra", body.extra.as_ref());
 }
@@ -72,7 +81,11 @@ fn input(entry: &InputEntry) -> Value {
 /// Whole numbers are written without a fraction, as people write them.
 fn number(value: f64) -> Value {
     const EXACT: f64 = 9_007_199_254_740_992.0;
-    if value.fract() == 0.0 && value.abs() <= EXACT { (value as i64).into() } else { value.into() }
+    if value.fract() == 0.0 && value.abs() <= EXACT {
+        (value as i64).into()
+    } else {
+        value.into()
+    }
 }
 
 fn node(entry: &NodeEntry) -> Value {
@@ -80,7 +93,10 @@ fn node(entry: &NodeEntry) -> Value {
     json.insert("type".to_owned(), entry.ty.clone().into());
     text(&mut json, "doc", entry.doc.as_ref());
     if !entry.inputs.is_empty() {
-        let inputs = entry.inputs.iter().map(|(name, entry)| (name.clone(), binding(entry)));
+        let inputs = entry
+            .inputs
+            .iter()
+            .map(|(name, entry)| (name.clone(), binding(entry)));
         json.insert("inputs".to_owned(), Value::Object(inputs.collect()));
     }
     any(&mut json, "extra", entry.extra.as_ref());

@@ -54,11 +54,16 @@ struct Place<'a, 'd> {
 impl Place<'_, '_> {
     fn node(&self, code: &'static str, message: String) -> Diagnostic {
         let diagnostic = Diagnostic::error(code, message);
-        let diagnostic = diagnostic.at(self.template.node_pointer(self.node)).in_node(self.path);
+        let diagnostic = diagnostic
+            .at(self.template.node_pointer(self.node))
+            .in_node(self.path);
         if self.template.name.is_empty() {
             diagnostic
         } else {
-            diagnostic.because(format!("`{}` is a node of the sub-graph `{}`", self.path, self.template.name))
+            diagnostic.because(format!(
+                "`{}` is a node of the sub-graph `{}`",
+                self.path, self.template.name
+            ))
         }
     }
 
@@ -103,7 +108,9 @@ pub(super) fn expand(
     }
     let mut stack = vec![Frame::new(templates, 0, String::new(), inputs, 0)];
     let outputs = loop {
-        let Some(frame) = stack.last_mut() else { unreachable!("the loop ends at the last frame") };
+        let Some(frame) = stack.last_mut() else {
+            unreachable!("the loop ends at the last frame")
+        };
         let template = &templates[frame.template];
         let Some(index) = template.order.get(frame.done).map(|index| *index as usize) else {
             let outputs = outputs(template, &frame.made);
@@ -132,7 +139,11 @@ pub(super) fn expand(
     };
     for ((name, _), output) in document.body.outputs.iter().zip(outputs) {
         if let Some((node, ty)) = output {
-            graph.outputs.push(Output { name: name.clone(), node, ty });
+            graph.outputs.push(Output {
+                name: name.clone(),
+                node,
+                ty,
+            });
         }
     }
     graph
@@ -147,7 +158,14 @@ impl Frame {
         node: usize,
     ) -> Self {
         let made = vec![Made::Nothing; templates[template].nodes.len()];
-        Self { template, done: 0, prefix, inputs, made, node }
+        Self {
+            template,
+            done: 0,
+            prefix,
+            inputs,
+            made,
+            node,
+        }
     }
 
     /// What a wire carries; `None` if that is wrong, which is reported, or for literals.
@@ -157,7 +175,11 @@ impl Frame {
             Wire::Input(input) => self.inputs[input as usize].clone(),
             Wire::Node(port) => {
                 let (node, ty) = self.made[port.node as usize].output(port.output)?;
-                Some(Bound { source: Source::Node(node), from: ty, seen: ty })
+                Some(Bound {
+                    source: Source::Node(node),
+                    from: ty,
+                    seen: ty,
+                })
             }
         }
     }
@@ -175,7 +197,9 @@ impl Made {
 
 fn outputs(template: &Template<'_>, made: &[Made]) -> Vec<Option<(NodeId, Type)>> {
     let ports = template.outputs.iter();
-    ports.map(|port| port.and_then(|port| made[port.node as usize].output(port.output))).collect()
+    ports
+        .map(|port| port.and_then(|port| made[port.node as usize].output(port.output)))
+        .collect()
 }
 
 /// The default of an input of a graph, against its own bounds.
@@ -215,7 +239,10 @@ fn input_value(
             return None;
         }
     };
-    let (min, max) = (entry.min.map(|bound| bound as f32), entry.max.map(|bound| bound as f32));
+    let (min, max) = (
+        entry.min.map(|bound| bound as f32),
+        entry.max.map(|bound| bound as f32),
+    );
     if let Some(number) = range::outside(&value.numbers(), min, max) {
         let bounds = range::shown_bounds(min, max);
         let message = format!("the default {number} is outside its own bounds, {bounds}");
@@ -234,18 +261,32 @@ fn sub_graph_inputs(
     inner: &Template<'_>,
 ) -> Vec<Option<Bound>> {
     let path = format!("{}{}", frame.prefix, template.nodes[index].name);
-    let place = Place { template, node: index, path: &path };
+    let place = Place {
+        template,
+        node: index,
+        path: &path,
+    };
     let mut bounds = Vec::with_capacity(inner.inputs.len());
     for (position, (name, entry)) in inner.body.inputs.iter().enumerate() {
         let Some(ty) = inner.inputs[position] else {
             bounds.push(None);
             continue;
         };
-        let wire = template.nodes[index].wires.iter().find(|(port, _)| *port as usize == position);
+        let wire = template.nodes[index]
+            .wires
+            .iter()
+            .find(|(port, _)| *port as usize == position);
         let of_literal = |value: Literal| {
-            Some(Bound { source: Source::Literal(value), from: ty, seen: ty })
+            Some(Bound {
+                source: Source::Literal(value),
+                from: ty,
+                seen: ty,
+            })
         };
-        let (min, max) = (entry.min.map(|bound| bound as f32), entry.max.map(|bound| bound as f32));
+        let (min, max) = (
+            entry.min.map(|bound| bound as f32),
+            entry.max.map(|bound| bound as f32),
+        );
         bounds.push(match wire {
             None => {
                 let pointer = format!("{}/inputs/{}", inner.pointer, escape(name));
@@ -297,16 +338,25 @@ fn convert(
     bound: Bound,
 ) -> Option<Bound> {
     if bound.seen.converts_to(ty) {
-        let Source::Literal(value) = &bound.source else { return Some(Bound { seen: ty, ..bound }) };
+        let Source::Literal(value) = &bound.source else {
+            return Some(Bound { seen: ty, ..bound });
+        };
         let value = literal::from_numbers(&value.numbers(), ty).unwrap_or_else(|| value.clone());
-        return Some(Bound { source: Source::Literal(value), from: ty, seen: ty });
+        return Some(Bound {
+            source: Source::Literal(value),
+            from: ty,
+            seen: ty,
+        });
     }
     let message = format!("`{port}` wants a `{ty}`, not a `{}`", bound.seen);
     let help = conversion(context.specs, bound.seen, ty);
-    let mut diagnostic =
-        place.port("type-mismatch", port, message).because(origin(graph, &bound)).help_if(help);
+    let mut diagnostic = place
+        .port("type-mismatch", port, message)
+        .because(origin(graph, &bound))
+        .help_if(help);
     if matches!(bound.seen, Type::Color3 | Type::Color4) && ty == Type::Vector2 {
-        diagnostic = diagnostic.because("a colour is no position: its channels are not coordinates");
+        diagnostic =
+            diagnostic.because("a colour is no position: its channels are not coordinates");
     }
     context.report(diagnostic);
     None
@@ -323,7 +373,10 @@ fn origin(graph: &Graph, bound: &Bound) -> String {
         }
         Source::Node(node) => {
             let node = graph.node(*node);
-            format!("the node `{}` (`{}`) is a `{}`", node.name, node.spec.name, bound.seen)
+            format!(
+                "the node `{}` (`{}`) is a `{}`",
+                node.name, node.spec.name, bound.seen
+            )
         }
     }
 }
@@ -354,7 +407,11 @@ fn node(
     let spec = context.specs[definition];
     let entry = &template.nodes[index];
     let path = format!("{}{}", frame.prefix, entry.name);
-    let place = Place { template, node: index, path: &path };
+    let place = Place {
+        template,
+        node: index,
+        path: &path,
+    };
 
     // What is written and connected, by port. A connection to something wrong makes the node
     // wrong, but its literals are still looked at.
@@ -371,7 +428,8 @@ fn node(
     }
 
     let common = common_type(context, graph, &place, spec, &wires, &bounds);
-    sound &= common.is_some();
+    let fits = common.is_some();
+    sound &= fits;
     let common = common.unwrap_or(Type::Float);
 
     let mut inputs = Vec::with_capacity(spec.inputs.len());
@@ -384,28 +442,44 @@ fn node(
         };
         let input = match (wire, bound) {
             (None, _) => Some(match literal::default(port, ty) {
-                Some(value) => Input { source: Source::Literal(value), from: ty, ty },
-                None => Input { source: Source::Surface, from: Type::Vector2, ty },
+                Some(value) => Input {
+                    source: Source::Literal(value),
+                    from: ty,
+                    ty,
+                },
+                None => Input {
+                    source: Source::Surface,
+                    from: Type::Vector2,
+                    ty,
+                },
             }),
             // Without the common type, what a literal should be is not known.
             (Some(Wire::Literal(_)), _) if port.ty == PortType::Any && !sound => None,
-            (Some(Wire::Literal(value)), _) => {
-                match written(value, port.ty, ty) {
-                    Ok(value) => {
-                        if let Literal::Stops(read) = &value {
-                            stops = read.ty;
-                        }
-                        Some(Input { source: Source::Literal(value), from: ty, ty })
+            (Some(_), _) if port.ty == PortType::Any && !fits => None,
+            (Some(Wire::Literal(value)), _) => match written(value, port.ty, ty) {
+                Ok(value) => {
+                    if let Literal::Stops(read) = &value {
+                        stops = read.ty;
                     }
-                    Err(mistake) => {
-                        let place = place.port("", port.name, String::new());
-                        context.report(mistake.into_diagnostic(place));
-                        None
-                    }
+                    Some(Input {
+                        source: Source::Literal(value),
+                        from: ty,
+                        ty,
+                    })
                 }
+                Err(mistake) => {
+                    let place = place.port("", port.name, String::new());
+                    context.report(mistake.into_diagnostic(place));
+                    None
+                }
+            },
+            (Some(_), Some(bound)) => {
+                convert(context, graph, &place, port.name, ty, bound).map(|bound| Input {
+                    source: bound.source,
+                    from: bound.from,
+                    ty,
+                })
             }
-            (Some(_), Some(bound)) => convert(context, graph, &place, port.name, ty, bound)
-                .map(|bound| Input { source: bound.source, from: bound.from, ty }),
             (Some(_), None) => None,
         };
         if let Some(input) = &input {
@@ -424,7 +498,14 @@ fn node(
     };
     let pointer = template.node_pointer(index);
     let id = NodeId(position_u32(graph.nodes.len()));
-    graph.nodes.push(Node { name: path, pointer, definition, spec, ty, inputs });
+    graph.nodes.push(Node {
+        name: path,
+        pointer,
+        definition,
+        spec,
+        ty,
+        inputs,
+    });
     Some((id, ty))
 }
 
@@ -446,7 +527,12 @@ fn common_type(
     bounds: &[Option<Bound>],
 ) -> Option<Type> {
     let mut common = Type::Float;
-    let any = || spec.inputs.iter().enumerate().filter(|(_, port)| port.ty == PortType::Any);
+    let any = || {
+        spec.inputs
+            .iter()
+            .enumerate()
+            .filter(|(_, port)| port.ty == PortType::Any)
+    };
     for (i, port) in any() {
         let Some(bound) = &bounds[i] else { continue };
         let Some(wider) = common.widest(bound.seen) else {
@@ -490,7 +576,9 @@ fn check_range(
     let (refusal, what) = match source {
         Source::Literal(Literal::Numbers(ty, numbers)) => {
             let numbers = &numbers[..ty.components()];
-            let refused = numbers.iter().find_map(|x| Some((range::refusal(&port.range, *x, *x)?, x)));
+            let refused = numbers
+                .iter()
+                .find_map(|x| Some((range::refusal(&port.range, *x, *x)?, x)));
             match refused {
                 Some((refusal, number)) => (refusal, format!("`{}` is {number}", port.name)),
                 None => return true,
@@ -508,7 +596,10 @@ fn check_range(
             match range::refusal(&port.range, low, high) {
                 Some(refusal) => {
                     let bounds = range::shown_bounds(parameter.min, parameter.max);
-                    let what = format!("`{}` is the input `{}`, which can be {bounds}", port.name, parameter.name);
+                    let what = format!(
+                        "`{}` is the input `{}`, which can be {bounds}",
+                        port.name, parameter.name
+                    );
                     let help = format!("narrow `min` and `max` of the input `{}`", parameter.name);
                     let message = format!("{what}: {refusal}");
                     let diagnostic = place.port("out-of-range", port.name, message);

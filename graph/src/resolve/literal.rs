@@ -15,16 +15,28 @@ pub(super) struct Mistake {
 
 impl Mistake {
     fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code, message: message.into(), help: None }
+        Self {
+            code,
+            message: message.into(),
+            help: None,
+        }
     }
 
     fn help(self, help: impl Into<String>) -> Self {
-        Self { help: Some(help.into()), ..self }
+        Self {
+            help: Some(help.into()),
+            ..self
+        }
     }
 
     /// The diagnostic at that place.
     pub(super) fn into_diagnostic(self, place: Diagnostic) -> Diagnostic {
-        Diagnostic { code: self.code, message: self.message, ..place }.help_if(self.help)
+        Diagnostic {
+            code: self.code,
+            message: self.message,
+            ..place
+        }
+        .help_if(self.help)
     }
 }
 
@@ -59,7 +71,10 @@ fn wanted(ty: Type) -> &'static str {
 /// A number as f32.
 fn finite(value: &Value) -> Result<f32, Mistake> {
     let Some(number) = value.as_f64() else {
-        return Err(Mistake::new("type-mismatch", format!("{} is no number", shown(value))));
+        return Err(Mistake::new(
+            "type-mismatch",
+            format!("{} is no number", shown(value)),
+        ));
     };
     // Narrowing to the semantics of the graph is the point.
     let narrow = number as f32;
@@ -100,7 +115,11 @@ pub(crate) fn color(text: &str) -> Option<Literal> {
     for (i, channel) in channels.iter_mut().take(ty.components()).enumerate() {
         let byte = u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok()?;
         let encoded = f64::from(byte) / 255.0;
-        let value = if i == 3 { encoded } else { linear_from_srgb(encoded) };
+        let value = if i == 3 {
+            encoded
+        } else {
+            linear_from_srgb(encoded)
+        };
         *channel = value as f32;
     }
     Some(Literal::Numbers(ty, channels))
@@ -108,7 +127,11 @@ pub(crate) fn color(text: &str) -> Option<Literal> {
 
 /// The transfer function of IEC 61966-2-1 (sRGB), §5.2, inverted.
 fn linear_from_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 /// The type that a literal has by itself: one number is a float, two a vector, three and four a
@@ -145,16 +168,15 @@ pub(super) fn literal(value: &Value, ty: Type) -> Result<Literal, Mistake> {
             let whole = number.as_i64().or_else(|| {
                 // 5.0 is whole as well.
                 let number = number.as_f64()?;
-                (number.fract() == 0.0 && number.abs() <= f64::from(i32::MAX)).then_some(number as i64)
+                (number.fract() == 0.0 && number.abs() <= f64::from(i32::MAX))
+                    .then_some(number as i64)
             });
             let whole = whole.and_then(|whole| i32::try_from(whole).ok());
             whole.map(Literal::Integer).ok_or_else(mismatch)
         }
         (Type::String | Type::Filename, Value::String(text)) => Ok(Literal::Text(text.clone())),
         (Type::String | Type::Filename | Type::Boolean | Type::Integer, _) => Err(mismatch()),
-        (_, Value::Number(_)) => {
-            from_numbers(&[finite(value)?], ty).ok_or_else(mismatch)
-        }
+        (_, Value::Number(_)) => from_numbers(&[finite(value)?], ty).ok_or_else(mismatch),
         (_, Value::Array(items)) => {
             if items.len() > 4 {
                 return Err(mismatch());
@@ -197,11 +219,15 @@ pub(super) fn choice(value: &Value, names: &[&'static str]) -> Result<Literal, M
 /// The stops of a ramp, sorted; those at the same place keep their order.
 pub(super) fn stops(value: &Value) -> Result<Literal, Mistake> {
     let bad = |message: String| {
-        let help = "write `[ { \"at\": 0, \"value\": 0.2 }, { \"at\": 1, \"value\": \"#ffffff\" } ]`";
+        let help =
+            "write `[ { \"at\": 0, \"value\": 0.2 }, { \"at\": 1, \"value\": \"#ffffff\" } ]`";
         Mistake::new("bad-stops", message).help(help)
     };
     let Value::Array(items) = value else {
-        return Err(bad(format!("a list of stops is wanted here, not {}", shown(value))));
+        return Err(bad(format!(
+            "a list of stops is wanted here, not {}",
+            shown(value)
+        )));
     };
     if items.is_empty() {
         return Err(bad("a ramp has at least one stop".to_owned()));
@@ -210,7 +236,10 @@ pub(super) fn stops(value: &Value) -> Result<Literal, Mistake> {
     let mut ty = Type::Float;
     for (index, item) in items.iter().enumerate() {
         let Value::Object(members) = item else {
-            return Err(bad(format!("stop {index} is {}, not an object", shown(item))));
+            return Err(bad(format!(
+                "stop {index} is {}, not an object",
+                shown(item)
+            )));
         };
         let unknown = members.keys().find(|key| *key != "at" && *key != "value");
         if let Some(key) = unknown {
@@ -223,7 +252,10 @@ pub(super) fn stops(value: &Value) -> Result<Literal, Mistake> {
         let own = natural(value, Type::Color3).and_then(|own| own.widest(ty));
         let Some(own) = own.filter(|own| matches!(own, Type::Float | Type::Color3 | Type::Color4))
         else {
-            return Err(bad(format!("the value of stop {index} is {}", shown(value))));
+            return Err(bad(format!(
+                "the value of stop {index} is {}",
+                shown(value)
+            )));
         };
         ty = own;
         read.push((at, value));
@@ -259,8 +291,14 @@ pub(super) fn default(port: &PortSpec, ty: Type) -> Option<Literal> {
         Default::Color3(rgb) => numbers(&rgb),
         Default::Choice(name) => Literal::Text(name.to_owned()),
         Default::Stops(stops) => {
-            let stops = stops.iter().map(|(at, x)| Stop { at: *at, value: [*x, 0.0, 0.0, 0.0] });
-            Literal::Stops(Stops { ty: Type::Float, stops: stops.collect() })
+            let stops = stops.iter().map(|(at, x)| Stop {
+                at: *at,
+                value: [*x, 0.0, 0.0, 0.0],
+            });
+            Literal::Stops(Stops {
+                ty: Type::Float,
+                stops: stops.collect(),
+            })
         }
     })
 }
@@ -292,16 +330,33 @@ mod tests {
             Ok(Literal::Numbers(Type::Vector3, [2.0, 2.0, 2.0, 0.0]))
         );
         assert_eq!(rgb(Type::Integer, json!(5.0)), Ok(Literal::Integer(5)));
-        assert_eq!(rgb(Type::Integer, json!(5.5)).unwrap_err().code, "type-mismatch");
-        assert_eq!(rgb(Type::Float, json!([1, 2])).unwrap_err().code, "type-mismatch");
-        assert_eq!(rgb(Type::Float, json!(1e300)).unwrap_err().code, "number-not-finite");
-        assert_eq!(rgb(Type::Color3, json!("#12345")).unwrap_err().code, "bad-color");
-        assert_eq!(rgb(Type::Color3, json!("#éaaaa")).unwrap_err().code, "bad-color");
+        assert_eq!(
+            rgb(Type::Integer, json!(5.5)).unwrap_err().code,
+            "type-mismatch"
+        );
+        assert_eq!(
+            rgb(Type::Float, json!([1, 2])).unwrap_err().code,
+            "type-mismatch"
+        );
+        assert_eq!(
+            rgb(Type::Float, json!(1e300)).unwrap_err().code,
+            "number-not-finite"
+        );
+        assert_eq!(
+            rgb(Type::Color3, json!("#12345")).unwrap_err().code,
+            "bad-color"
+        );
+        assert_eq!(
+            rgb(Type::Color3, json!("#éaaaa")).unwrap_err().code,
+            "bad-color"
+        );
     }
 
     #[test]
     fn hexadecimal_colours_are_srgb() {
-        let Some(Literal::Numbers(ty, [r, g, b, a])) = color("#ff808080") else { panic!("a colour") };
+        let Some(Literal::Numbers(ty, [r, g, b, a])) = color("#ff808080") else {
+            panic!("a colour")
+        };
         assert_eq!((ty, r), (Type::Color4, 1.0));
         // 128/255 in sRGB is 0.2158605 linear.
         assert!((g - 0.215_860_5).abs() < 1e-6 && g == b);
@@ -313,11 +368,18 @@ mod tests {
         let value = json!([
             { "at": 1, "value": 0.5 }, { "at": 0, "value": "#ffffff" }, { "at": 1, "value": 0.25 }
         ]);
-        let Ok(Literal::Stops(stops)) = stops(&value) else { panic!("stops") };
+        let Ok(Literal::Stops(stops)) = stops(&value) else {
+            panic!("stops")
+        };
         assert_eq!(stops.ty, Type::Color3);
         let places: Vec<(f32, f32)> = stops.stops.iter().map(|s| (s.at, s.value[2])).collect();
         assert_eq!(places, [(0.0, 1.0), (1.0, 0.5), (1.0, 0.25)]);
         assert_eq!(super::stops(&json!([])).unwrap_err().code, "bad-stops");
-        assert_eq!(super::stops(&json!([{ "at": 0, "value": [1, 2] }])).unwrap_err().code, "bad-stops");
+        assert_eq!(
+            super::stops(&json!([{ "at": 0, "value": [1, 2] }]))
+                .unwrap_err()
+                .code,
+            "bad-stops"
+        );
     }
 }

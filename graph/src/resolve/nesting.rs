@@ -22,10 +22,16 @@ pub(super) fn check(context: &mut Context<'_>, templates: &mut [Template<'_>]) -
     contains.dedup();
     let (sorted, cycles) = order(templates.len(), &contains);
     for cycle in &cycles {
-        let names: Vec<&str> = cycle.iter().map(|graph| templates[*graph as usize].name).collect();
+        let names: Vec<&str> = cycle
+            .iter()
+            .map(|graph| templates[*graph as usize].name)
+            .collect();
         let next = cycle[1 % cycle.len()] as usize;
         let template = &templates[cycle[0] as usize];
-        let node = template.nodes.iter().position(|node| node.kind == Kind::Graph(next));
+        let node = template
+            .nodes
+            .iter()
+            .position(|node| node.kind == Kind::Graph(next));
         let node = node.expect("a link of the cycle is a node");
         let message = format!("the sub-graph `{}` contains itself", names[0]);
         let mut diagnostic = Diagnostic::error("recursive-graph", message)
@@ -93,11 +99,22 @@ fn count(context: &mut Context<'_>, templates: &[Template<'_>], sorted: &[u32]) 
             if count <= 1 {
                 break;
             }
-            let uses =
-                templates[here].nodes.iter().filter(|node| node.kind == Kind::Graph(next)).count();
-            let outer = if here == 0 { "the graph".to_owned() } else { format!("`{}`", templates[here].name) };
+            let uses = templates[here]
+                .nodes
+                .iter()
+                .filter(|node| node.kind == Kind::Graph(next))
+                .count();
+            let outer = if here == 0 {
+                "the graph".to_owned()
+            } else {
+                format!("`{}`", templates[here].name)
+            };
             let inner = templates[next].name;
-            let times = if uses == 1 { "once".to_owned() } else { format!("{uses} times") };
+            let times = if uses == 1 {
+                "once".to_owned()
+            } else {
+                format!("{uses} times")
+            };
             let reason = format!("{outer} contains `{inner}` {times}, with {count} nodes each");
             diagnostic = diagnostic.because(reason);
             here = next;

@@ -19,10 +19,20 @@ pub(super) fn order(count: usize, needs: &[(u32, u32)]) -> (Vec<u32>, Vec<Vec<u3
         graph.add_node(());
     }
     for (user, needed) in needs {
-        graph.add_edge(NodeIndex::new(*needed as usize), NodeIndex::new(*user as usize), ());
+        graph.add_edge(
+            NodeIndex::new(*needed as usize),
+            NodeIndex::new(*user as usize),
+            (),
+        );
     }
     if let Ok(sorted) = toposort(&graph, None) {
-        return (sorted.into_iter().map(|index| position_u32(index.index())).collect(), Vec::new());
+        return (
+            sorted
+                .into_iter()
+                .map(|index| position_u32(index.index()))
+                .collect(),
+            Vec::new(),
+        );
     }
     // Kosaraju's components come in reverse topological order, and without recursion.
     let components = kosaraju_scc(&graph);
@@ -54,7 +64,11 @@ fn needs_of(members: &[u32], needs: &[(u32, u32)]) -> FxHashMap<u32, Vec<u32>> {
 
 /// The shortest cycle through the first written of the members of a component.
 fn shortest_cycle(members: &[u32], needs: FxHashMap<u32, Vec<u32>>) -> Vec<u32> {
-    let start = members.iter().copied().min().expect("a component has members");
+    let start = members
+        .iter()
+        .copied()
+        .min()
+        .expect("a component has members");
     let mut reached_from: FxHashMap<u32, u32> = FxHashMap::default();
     let mut queue = VecDeque::from([start]);
     while let Some(node) = queue.pop_front() {
@@ -90,8 +104,10 @@ pub(super) fn sort(context: &mut Context<'_>, templates: &mut [Template<'_>]) {
         let (order, cycles) = order(template.nodes.len(), &needs);
         template.order = order;
         for cycle in cycles {
-            let names: Vec<&str> =
-                cycle.iter().map(|node| template.nodes[*node as usize].name).collect();
+            let names: Vec<&str> = cycle
+                .iter()
+                .map(|node| template.nodes[*node as usize].name)
+                .collect();
             let first = cycle[0] as usize;
             let mut diagnostic =
                 Diagnostic::error("cycle", format!("the node `{}` needs itself", names[0]))
@@ -135,8 +151,7 @@ mod tests {
 
     #[test]
     fn every_component_gives_one_whole_cycle() {
-        let (sorted, cycles) =
-            order(6, &[(0, 1), (1, 2), (2, 0), (3, 3), (4, 0), (5, 4), (1, 5)]);
+        let (sorted, cycles) = order(6, &[(0, 1), (1, 2), (2, 0), (3, 3), (4, 0), (5, 4), (1, 5)]);
         assert_eq!(sorted.len(), 6);
         assert_eq!(cycles, [vec![0, 1, 2], vec![3]]);
     }

@@ -20,12 +20,16 @@ pub(super) fn refusal(range: &Range, low: f32, high: f32) -> Option<String> {
 
 /// The smallest and the largest value that an input of the graph can have.
 pub(super) fn bounds(parameter: &Parameter) -> (f32, f32) {
-    (parameter.min.unwrap_or(f32::MIN), parameter.max.unwrap_or(f32::MAX))
+    (
+        parameter.min.unwrap_or(f32::MIN),
+        parameter.max.unwrap_or(f32::MAX),
+    )
 }
 
 /// The first of the numbers that does not lie between bounds.
 pub(crate) fn outside(numbers: &[f32], min: Option<f32>, max: Option<f32>) -> Option<f32> {
-    let fits = |number: f32| min.is_none_or(|min| number >= min) && max.is_none_or(|max| number <= max);
+    let fits =
+        |number: f32| min.is_none_or(|min| number >= min) && max.is_none_or(|max| number <= max);
     numbers.iter().copied().find(|number| !fits(*number))
 }
 
@@ -50,6 +54,10 @@ mod tests {
         assert!(refusal(&range, 0.0, 1.0).is_some());
         assert!(refusal(&range, f32::MIN, f32::MAX).is_some());
         assert_eq!(refusal(&range, 0.5, 64.0), None);
-        assert!(refusal(&Range::hard(1.0, 12.0), -3.0, -3.0).expect("refused").contains("from 1 to 12"));
+        assert!(
+            refusal(&Range::hard(1.0, 12.0), -3.0, -3.0)
+                .expect("refused")
+                .contains("from 1 to 12")
+        );
     }
 }

@@ -77,10 +77,12 @@ impl Template<'_> {
 /// Looks up every name of the document.
 pub(super) fn build<'d>(context: &mut Context<'_>, document: &'d Document) -> Vec<Template<'d>> {
     let graphs = document.graphs.iter();
-    let bodies = std::iter::once(("", &document.body, String::new())).chain(graphs.map(
-        |(name, body)| (name.as_str(), body, format!("/graphs/{}", escape(name))),
-    ));
-    bodies.map(|(name, body, pointer)| template(context, document, name, body, pointer)).collect()
+    let bodies = std::iter::once(("", &document.body, String::new())).chain(
+        graphs.map(|(name, body)| (name.as_str(), body, format!("/graphs/{}", escape(name)))),
+    );
+    bodies
+        .map(|(name, body, pointer)| template(context, document, name, body, pointer))
+        .collect()
 }
 
 fn template<'d>(
@@ -97,8 +99,15 @@ fn template<'d>(
             let names = Type::ALL.into_iter().filter(|ty| ty.components() > 0);
             let names: Vec<&str> = names.map(Type::name).collect();
             let help = context.nearest(&entry.ty, names.iter().copied());
-            let message = format!("`{}` is no type that an input of a graph can have", entry.ty);
-            context.report(Diagnostic::error("unknown-type", message).at(at).help_if(help));
+            let message = format!(
+                "`{}` is no type that an input of a graph can have",
+                entry.ty
+            );
+            context.report(
+                Diagnostic::error("unknown-type", message)
+                    .at(at)
+                    .help_if(help),
+            );
         }
         ty
     });
@@ -114,7 +123,11 @@ fn template<'d>(
     };
     // The kinds first: a wire looks at the kind of the node that it comes from.
     for (name, entry) in &body.nodes {
-        let node = TemplateNode { name, kind: Kind::Broken, wires: Vec::new() };
+        let node = TemplateNode {
+            name,
+            kind: Kind::Broken,
+            wires: Vec::new(),
+        };
         template.nodes.push(node);
         let index = template.nodes.len() - 1;
         template.nodes[index].kind = kind(context, document, &template, index, entry);
@@ -184,7 +197,10 @@ fn wires<'d>(
             Kind::Spec(spec) => {
                 let spec = context.specs[spec];
                 let position = spec.input(port);
-                (position, position.is_some_and(|position| spec.inputs[position].uniform))
+                (
+                    position,
+                    position.is_some_and(|position| spec.inputs[position].uniform),
+                )
             }
             Kind::Graph(graph) => (document.graphs[graph - 1].inputs.get_index_of(port), false),
             // Its references are looked up all the same.
@@ -192,13 +208,17 @@ fn wires<'d>(
         };
         let place = |code: &'static str, message: String| {
             let at = template.port_pointer(index, port);
-            Diagnostic::error(code, message).at(at).in_node(node.name).in_port(port)
+            Diagnostic::error(code, message)
+                .at(at)
+                .in_node(node.name)
+                .in_port(port)
         };
         let Some(position) = position else {
             let help = match node.kind {
-                Kind::Spec(spec) => {
-                    context.nearest(port, context.specs[spec].inputs.iter().map(|port| port.name))
-                }
+                Kind::Spec(spec) => context.nearest(
+                    port,
+                    context.specs[spec].inputs.iter().map(|port| port.name),
+                ),
                 Kind::Graph(graph) => {
                     let names = document.graphs[graph - 1].inputs.keys();
                     context.nearest(port, names.map(String::as_str))
@@ -249,33 +269,58 @@ fn reference(
     let Some(node) = template.body.nodes.get_index_of(&reference.node) else {
         let names = template.body.nodes.keys().map(String::as_str);
         let help = if template.body.inputs.contains_key(&reference.node) {
-            Some(format!("an input of the graph is written `{{ \"input\": \"{}\" }}`", reference.node))
+            Some(format!(
+                "an input of the graph is written `{{ \"input\": \"{}\" }}`",
+                reference.node
+            ))
         } else {
             context.nearest(&reference.node, names)
         };
         let message = format!("there is no node `{}`", reference.node);
         let place = place.clone();
-        context.report(Diagnostic { code: "unknown-node", message, ..place }.help_if(help));
+        context.report(
+            Diagnostic {
+                code: "unknown-node",
+                message,
+                ..place
+            }
+            .help_if(help),
+        );
         return None;
     };
     let output = match template.nodes[node].kind {
         Kind::Spec(_) => (reference.output == "out").then_some(0),
-        Kind::Graph(graph) => document.graphs[graph - 1].outputs.get_index_of(&reference.output),
+        Kind::Graph(graph) => document.graphs[graph - 1]
+            .outputs
+            .get_index_of(&reference.output),
         Kind::Broken => Some(0),
     };
     if output.is_none() {
         let help = match template.nodes[node].kind {
             Kind::Graph(graph) => {
-                let names = document.graphs[graph - 1].outputs.keys().map(String::as_str);
+                let names = document.graphs[graph - 1]
+                    .outputs
+                    .keys()
+                    .map(String::as_str);
                 context.nearest(&reference.output, names)
             }
             _ => Some("its output is `out`".to_owned()),
         };
         let message = format!("`{}` has no output `{}`", reference.node, reference.output);
         let place = place.clone();
-        context.report(Diagnostic { code: "unknown-output", message, ..place }.help_if(help));
+        context.report(
+            Diagnostic {
+                code: "unknown-output",
+                message,
+                ..place
+            }
+            .help_if(help),
+        );
     }
-    output.map(|output| Port { node: position_u32(node), output: position_u32(output) })
+    output.map(|output| Port {
+        node: position_u32(node),
+        output: position_u32(output),
+    })
 }
 
 /// A document of 2³² nodes does not fit into memory.
@@ -293,7 +338,12 @@ pub(super) fn find_unused(context: &mut Context<'_>, templates: &[Template<'_>])
         let template = &templates[position];
         let mut used = vec![false; template.nodes.len()];
         let mut used_inputs = vec![false; template.body.inputs.len()];
-        let mut stack: Vec<u32> = template.outputs.iter().flatten().map(|port| port.node).collect();
+        let mut stack: Vec<u32> = template
+            .outputs
+            .iter()
+            .flatten()
+            .map(|port| port.node)
+            .collect();
         while let Some(node) = stack.pop() {
             let node = node as usize;
             if std::mem::replace(&mut used[node], true) {
@@ -318,7 +368,11 @@ pub(super) fn find_unused(context: &mut Context<'_>, templates: &[Template<'_>])
             if !used[index] {
                 let message = format!("no output needs the node `{}`", node.name);
                 let diagnostic = Diagnostic::warning("unused-node", message);
-                found.push(diagnostic.at(template.node_pointer(index)).in_node(node.name));
+                found.push(
+                    diagnostic
+                        .at(template.node_pointer(index))
+                        .in_node(node.name),
+                );
             }
         }
         for ((input, _), used) in template.body.inputs.iter().zip(used_inputs) {

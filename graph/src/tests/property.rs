@@ -10,10 +10,41 @@ use crate::{CheckOptions, Document, check, load};
 fn word() -> impl Strategy<Value = String> {
     prop_oneof![
         prop::sample::select(vec![
-            "version", "name", "nodes", "inputs", "outputs", "graphs", "extra", "type", "value",
-            "node", "input", "output", "min", "max", "doc", "at", "stops", "in", "in1", "in2", "a",
-            "b", "g", "add", "sin", "fractal2d", "colorramp", "divide", "graph:g", "out", "float",
-            "color3", "#ff8800", "gaussian", "octaves",
+            "version",
+            "name",
+            "nodes",
+            "inputs",
+            "outputs",
+            "graphs",
+            "extra",
+            "type",
+            "value",
+            "node",
+            "input",
+            "output",
+            "min",
+            "max",
+            "doc",
+            "at",
+            "stops",
+            "in",
+            "in1",
+            "in2",
+            "a",
+            "b",
+            "g",
+            "add",
+            "sin",
+            "fractal2d",
+            "colorramp",
+            "divide",
+            "graph:g",
+            "out",
+            "float",
+            "color3",
+            "#ff8800",
+            "gaussian",
+            "octaves",
         ])
         .prop_map(str::to_owned),
         "[a-c/~é]{0,3}",
@@ -50,7 +81,15 @@ fn node() -> impl Strategy<Value = Value> {
     let ports = prop::sample::select(vec!["in", "in1", "in2", "texcoord", "octaves", "stops"]);
     let inputs = prop::collection::vec((ports.prop_map(str::to_owned), binding), 0..3);
     let types = prop::sample::select(vec![
-        "add", "sin", "fractal2d", "colorramp", "divide", "multiply", "graph:g", "graph:h", "texcoord",
+        "add",
+        "sin",
+        "fractal2d",
+        "colorramp",
+        "divide",
+        "multiply",
+        "graph:g",
+        "graph:h",
+        "texcoord",
     ]);
     (types, inputs).prop_map(|(ty, inputs)| {
         let inputs: serde_json::Map<String, Value> = inputs.into_iter().collect();
@@ -72,7 +111,10 @@ fn hold(text: &str) {
     let loaded = load(text, SPECS);
     for diagnostic in &loaded.diagnostics {
         assert!(diagnostic.line.is_some(), "{diagnostic}");
-        assert!(diagnostic.pointer.is_some() || diagnostic.code == "syntax", "{diagnostic}");
+        assert!(
+            diagnostic.pointer.is_some() || diagnostic.code == "syntax",
+            "{diagnostic}"
+        );
     }
     let failed = loaded.diagnostics.iter().any(crate::Diagnostic::is_error);
     assert_eq!(loaded.graph.is_none(), failed);
@@ -90,7 +132,13 @@ fn hold(text: &str) {
                 }
             }
         }
-        let checked = check(graph, &CheckOptions { allow_sampling: true }).expect("sampled");
+        let checked = check(
+            graph,
+            &CheckOptions {
+                allow_sampling: true,
+            },
+        )
+        .expect("sampled");
         assert_eq!(checked.signals().len(), checked.graph().nodes.len());
         assert!(!checked.report().to_string().contains("NaN"));
     }

@@ -31,10 +31,15 @@ fn a_graph_stands_in_topological_order_with_defaults_and_types() {
     let swirl = &graph.nodes[0];
     assert_eq!(swirl.input("texcoord").source, Source::Surface);
     assert_eq!(swirl.literal("octaves"), &Literal::Integer(5));
-    assert_eq!(swirl.literal("kernel"), &Literal::Text("gaussian".to_owned()));
+    assert_eq!(
+        swirl.literal("kernel"),
+        &Literal::Text("gaussian".to_owned())
+    );
     assert_eq!(swirl.pointer, "/nodes/swirl");
     assert_eq!(graph.parameters[0].max, Some(64.0));
-    let Literal::Stops(stops) = graph.nodes[2].literal("stops") else { panic!("stops") };
+    let Literal::Stops(stops) = graph.nodes[2].literal("stops") else {
+        panic!("stops")
+    };
     assert_eq!(stops.stops[0].at, -1.0);
 }
 
@@ -67,8 +72,14 @@ fn literals_take_the_type_of_what_they_stand_beside() {
     };
     assert_eq!(ty(r#""in1": 1"#), Type::Float);
     assert_eq!(ty(r#""in1": { "node": "t" }, "in2": 1"#), Type::Vector2);
-    assert_eq!(ty(r#""in1": { "node": "c" }, "in2": [1, 2, 3]"#), Type::Color3);
-    assert_eq!(ty(r##""in1": { "node": "c" }, "in2": "#11223344""##), Type::Color4);
+    assert_eq!(
+        ty(r#""in1": { "node": "c" }, "in2": [1, 2, 3]"#),
+        Type::Color3
+    );
+    assert_eq!(
+        ty(r##""in1": { "node": "c" }, "in2": "#11223344""##),
+        Type::Color4
+    );
     assert_eq!(ty(r#""in1": [1, 2, 3, 4], "in2": 1"#), Type::Color4);
 }
 
@@ -110,7 +121,11 @@ fn what_is_unused_is_a_warning() {
         SPECS,
     );
     assert!(loaded.graph.is_some());
-    let codes: Vec<&str> = loaded.diagnostics.iter().map(|warning| warning.code).collect();
+    let codes: Vec<&str> = loaded
+        .diagnostics
+        .iter()
+        .map(|warning| warning.code)
+        .collect();
     assert_eq!(codes, ["unused-input", "unused-graph", "unused-node"]);
 }
 
@@ -133,8 +148,17 @@ fn a_chain_of_a_hundred_thousand_nodes_is_ordinary() {
 fn the_schema_knows_every_node_and_port() {
     let schema = schema(SPECS);
     let ports = &schema["$defs"]["node.fractal2d"]["properties"]["inputs"]["properties"];
-    assert_eq!(ports["octaves"]["anyOf"], json!([{ "type": "integer", "minimum": 1, "maximum": 16 }]));
-    assert_eq!(ports["kernel"]["anyOf"], json!([{ "enum": ["gaussian", "quadrupole"] }]));
+    assert_eq!(
+        ports["octaves"]["anyOf"],
+        json!([{ "type": "integer", "minimum": 1, "maximum": 16 }])
+    );
+    assert_eq!(
+        ports["kernel"]["anyOf"],
+        json!([{ "enum": ["gaussian", "quadrupole"] }])
+    );
     assert_eq!(ports["texcoord"].get("default"), None);
-    assert_eq!(schema["$defs"]["node"]["allOf"].as_array().map(Vec::len), Some(SPECS.len()));
+    assert_eq!(
+        schema["$defs"]["node"]["allOf"].as_array().map(Vec::len),
+        Some(SPECS.len())
+    );
 }
