@@ -33,7 +33,10 @@ fn program(nodes: usize) -> Program {
         values.push(value);
     }
     let recent = values[values.len() - 12..].to_vec();
-    let sum = recent.into_iter().reduce(|x, y| b.add(x, y)).expect("there are twelve");
+    let sum = recent
+        .into_iter()
+        .reduce(|x, y| b.add(x, y))
+        .expect("there are twelve");
     b.result("value", sum);
     let mut module = Module::default();
     b.finish(&mut module);
@@ -41,7 +44,11 @@ fn program(nodes: usize) -> Program {
     let interface = Interface {
         name: "long".to_owned(),
         parameters: Vec::new(),
-        outputs: vec![Port { name: "value".to_owned(), ty, default: Vec::new() }],
+        outputs: vec![Port {
+            name: "value".to_owned(),
+            ty,
+            default: Vec::new(),
+        }],
         moments: false,
     };
     Program { module, interface }

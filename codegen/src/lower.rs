@@ -5,6 +5,7 @@
 //! `auto` is a branch between two functions: nothing is ever unrolled.
 
 mod entry;
+mod fusion;
 mod method;
 mod sampling;
 mod symbols;
@@ -14,10 +15,10 @@ pub use method::{Method, ParseMethodError, PixelFilter};
 use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
 };
-use crate::moments::{Algebra, Mode, Signal, Symbol};
+use crate::moments::{Algebra, Mode, Sampled, Signal, Symbol};
 use mipless_graph::{Checked, Graph, Literal, Node, NodeId, NodeSpec, Source, Stops, Type};
 use rustc_hash::FxHashMap;
-use std::cell::RefCell;
+use std::{cell::RefCell, rc::Rc};
 
 /// The components of a node's output.
 pub type Bundle = Vec<Signal>;
@@ -67,7 +68,9 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         moments: options.moments,
     };
     let live = symbols::live(graph);
-    let compiler = Compiler { graph, catalogue, options, live, functions: RefCell::default() };
+    let inner = symbols::inner(graph, &live);
+    let (functions, fused) = (RefCell::default(), RefCell::default());
+    let compiler = Compiler { graph, catalogue, options, live, functions, fused, inner };
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
     Program { module: module.pruned(), interface }
@@ -93,6 +96,10 @@ struct Compiler<'a> {
     live: Vec<u32>,
     /// The functions that nodes share, by their keys.
     functions: RefCell<FxHashMap<String, FunctionRef>>,
+    /// The fused functions of nodes, sampled over their domains: one for each component.
+    fused: RefCell<FxHashMap<usize, Rc<Vec<Sampled>>>>,
+    /// Whether something but an output reads each node's output.
+    inner: Vec<bool>,
 }
 
 /// The parameters of an entry or of a function that stands for the graph.
@@ -142,6 +149,7 @@ pub struct Lower<'a> {
     filter_sd: f32,
     bundles: Vec<Option<Bundle>>,
     carriers: symbols::Carriers,
+    chains: Vec<Option<fusion::Chain>>,
     parameter_scalars: Vec<usize>,
     /// The footprint of each source, in wavelengths of its dominant detail.
     footprints: Vec<Value>,
@@ -157,6 +165,15 @@ impl<'a> Lower<'a> {
         mode: Mode,
     ) -> Self {
         let arguments = Arguments::declare(&mut b, compiler.graph);
+        Self::with(compiler, module, Algebra::new(b, mode), arguments)
+    }
+
+    fn with(
+        compiler: &'a Compiler<'a>,
+        module: &'a mut Module,
+        algebra: Algebra,
+        arguments: Arguments,
+    ) -> Self {
         let mut parameter_scalars = Vec::new();
         let mut next = 0;
         for parameter in &compiler.graph.parameters {
@@ -164,13 +181,14 @@ impl<'a> Lower<'a> {
             next += parameter.ty.components();
         }
         Self {
-            algebra: Algebra::new(b, mode),
+            algebra,
             module,
             compiler,
             arguments,
             filter_sd: compiler.options.filter.sd(),
             bundles: vec![None; compiler.graph.nodes.len()],
             carriers: symbols::Carriers::default(),
+            chains: vec![None; compiler.graph.nodes.len()],
             parameter_scalars,
             footprints: Vec::new(),
             nonlinear: false,
@@ -190,8 +208,13 @@ impl<'a> Lower<'a> {
             let kept = forks.then(|| self.algebra.next_symbol());
             let definition = &self.compiler.catalogue[node.definition];
             assert_eq!(definition.spec.name, node.spec.name, "the catalogue of the graph");
+            self.algebra.bent = false;
             let mut bundle = (definition.lower)(self, node);
             assert_eq!(bundle.len(), node.ty.components(), "components of {}", node.spec.name);
+            self.nonlinear |= self.algebra.bent;
+            if let Some(fused) = self.fuse(index, node) {
+                bundle = fused;
+            }
             self.carriers.born(&bundle);
             // Inputs that nothing else reads are gone: a symbol that only this signal still carries
             // is nobody's business.
@@ -415,8 +438,9 @@ impl<'a> Lower<'a> {
         self.footprints.push(wavelengths);
     }
 
-    /// Reports that the node is not linear in a signal with a spread.
+    /// Reports that the node is not linear in a signal with a spread. The algebra's operations do
+    /// so themselves.
     pub fn bends(&mut self) {
-        self.nonlinear = true;
+        self.algebra.bent = true;
     }
 }

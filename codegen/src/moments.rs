@@ -24,6 +24,7 @@ mod position;
 mod product;
 mod signal;
 mod smooth;
+mod tabulated;
 mod transfer;
 mod wave;
 
@@ -33,6 +34,7 @@ pub use normal::Normal;
 pub use piecewise::{Knot, Piecewise, Shape};
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
+pub(crate) use tabulated::{Demand, Sampled, Tabulated};
 pub use transfer::{Gaussian, Moments, Transfer};
 pub use wave::SquareWave;
 
@@ -73,13 +75,15 @@ pub struct Algebra {
     /// Whether the signal under construction is read by several consumers, so that its fresh parts
     /// are symbols of their own.
     pub shares: bool,
+    /// Whether an operation since this was last cleared was not linear in a signal with a spread.
+    pub bent: bool,
     symbols: u32,
 }
 
 impl Algebra {
     /// An algebra that builds into `b`.
     pub fn new(b: Builder, mode: Mode) -> Self {
-        Self { b, mode, shares: false, symbols: 0 }
+        Self { b, mode, shares: false, bent: false, symbols: 0 }
     }
 
     /// The symbol that [`Self::fresh_symbol`] gives next.

@@ -118,7 +118,7 @@ impl Document {
     pub fn parse(text: &str) -> (Option<Self>, Vec<Diagnostic>) {
         match Tree::parse(text) {
             Ok(mut tree) => Self::from_tree(text, &mut tree),
-            Err(diagnostic) => (None, vec![diagnostic]),
+            Err(diagnostic) => (None, vec![*diagnostic]),
         }
     }
 

@@ -24,7 +24,7 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
             return Loaded {
                 document: None,
                 graph: None,
-                diagnostics: vec![diagnostic],
+                diagnostics: vec![*diagnostic],
             };
         }
     };

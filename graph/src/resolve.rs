@@ -4,10 +4,11 @@
 //!    types, ports, references, cycles (`template`, `order`).
 //! 2. The expansion is counted before anything is expanded (`nesting`).
 //! 3. The templates are expanded in topological order with a stack of our own (`expand`), which
-//!    types the nodes, reads the literals (`literal`) and checks ranges (`range`).
+//!    types the nodes, reads the literals (`literal`) and checks what is connected (`connect`, `range`).
 //!
 //! Nothing recurses over the user's graph, so a chain of 100,000 nodes is an ordinary input.
 
+mod connect;
 mod expand;
 mod literal;
 mod nesting;

@@ -76,6 +76,6 @@ pub(crate) const DEF: NodeDef = NodeDef {
         };
         let position = position(lower, node);
         let field = lattice::filtered(lower, &position, octaves);
-        shaped(lower, node, &field, &position)
+        shaped(lower, node, &field, octaves.sd(), &position)
     },
 };

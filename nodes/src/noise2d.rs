@@ -50,6 +50,6 @@ pub(crate) const DEF: NodeDef = NodeDef {
         };
         let position = position(lower, node);
         let field = lattice::filtered(lower, &position, octaves);
-        shaped(lower, node, &field, &position)
+        shaped(lower, node, &field, 1.0, &position)
     },
 };

@@ -73,6 +73,6 @@ pub(crate) const DEF: NodeDef = NodeDef {
         };
         let position = position(lower, node);
         let field = spectral::filtered(lower, &position, spectrum);
-        shaped(lower, node, &field, &position)
+        shaped(lower, node, &field, 1.0, &position)
     },
 };

@@ -12,12 +12,7 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     let moments = compiler.options.moments;
     // Variances of the point function are 0 and are not asked for.
     let options = Options { moments: false, ..*compiler.options };
-    let plain = Compiler {
-        options: &options,
-        live: compiler.live.clone(),
-        functions: Default::default(),
-        ..*compiler
-    };
+    let plain = compiler.with_options(&options);
     let (point, _) = graph_function(&plain, module, Mode::Point, &format!("{name}_point"));
     let outputs = point.results.len();
     let state_length = if moments { 2 * outputs } else { outputs };

@@ -19,6 +19,7 @@ impl Algebra {
                 Signal { mean, range, hermite: None, ..x.clone() }
             };
         }
+        self.bent = true;
         let variance = difference.variance(b);
         let (sd, inverse) = self.spread(variance);
         let b = &mut self.b;

@@ -16,6 +16,7 @@ impl Algebra {
             let by = y.flat_mean(b);
             return x.scale(b, by);
         }
+        self.bent = true;
         let (x, y) = (&x.flat(b), &y.flat(b));
         let covariance = x.covariance(b, y);
         let linear = {

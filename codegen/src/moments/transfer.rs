@@ -71,6 +71,7 @@ impl Algebra {
         let b = &mut self.b;
         let gaussian = Gaussian { mean: x.mean, variance, sd, inverse_sd, range: x.range };
         let m = t.moments(b, &gaussian);
+        self.bent |= !b.is_zero(m.distortion);
         let mut out = x.scale(b, m.slope);
         out.range = range;
         out.mean = m.mean;

@@ -105,7 +105,7 @@ pub(super) fn push_number(out: &mut String, mut number: u32) {
             break;
         }
     }
-    out.extend(digits[start..].iter().map(|&d| char::from(d)));
+    out.push_str(std::str::from_utf8(&digits[start..]).expect("digits are ASCII"));
 }
 
 /// Appends a constant as a WGSL literal of the same bits; returns its level.

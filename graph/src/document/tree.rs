@@ -58,7 +58,7 @@ impl Tree {
     ///
     /// # Errors
     /// The one syntax error, with its line and column.
-    pub(crate) fn parse(text: &str) -> Result<Self, Diagnostic> {
+    pub(crate) fn parse(text: &str) -> Result<Self, Box<Diagnostic>> {
         let read = Cell::new(0);
         let seed = Place {
             text: text.as_bytes(),
@@ -80,8 +80,9 @@ impl Tree {
                         .count()
                         + 1
                 });
-                Diagnostic::error("syntax", format!("this is not JSON: {reason}"))
-                    .at_line(small(line), small(column))
+                let message = format!("this is not JSON: {reason}");
+                let diagnostic = Diagnostic::error("syntax", message);
+                Box::new(diagnostic.at_line(small(line), small(column)))
             })
     }
 

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use super::connect::{Bound, Place, check_range, conversion, convert, origin};
 use super::template::{Kind, Template, Wire, position_u32};
 use super::{Context, literal, range};
 use crate::diagnostic::escape;
@@ -10,15 +11,6 @@ use crate::{
     Diagnostic, Graph, Input, Literal, Node, NodeId, NodeSpec, Output, OutputType, Parameter,
     ParameterId, PortType, Source, Type,
 };
-
-/// A value that is known: where it comes from, the type that it has there, and the type that it is
-/// seen as (an input of a sub-graph may be wider than what is connected to it).
-#[derive(Clone, Debug)]
-struct Bound {
-    source: Source,
-    from: Type,
-    seen: Type,
-}
 
 /// What became of a node of a template.
 #[derive(Clone, Debug)]
@@ -42,35 +34,6 @@ struct Frame {
     made: Vec<Made>,
     /// The node of the outer frame that it is.
     node: usize,
-}
-
-/// Where something stands, built only when something is reported.
-struct Place<'a, 'd> {
-    template: &'a Template<'d>,
-    node: usize,
-    path: &'a str,
-}
-
-impl Place<'_, '_> {
-    fn node(&self, code: &'static str, message: String) -> Diagnostic {
-        let diagnostic = Diagnostic::error(code, message);
-        let diagnostic = diagnostic
-            .at(self.template.node_pointer(self.node))
-            .in_node(self.path);
-        if self.template.name.is_empty() {
-            diagnostic
-        } else {
-            diagnostic.because(format!(
-                "`{}` is a node of the sub-graph `{}`",
-                self.path, self.template.name
-            ))
-        }
-    }
-
-    fn port(&self, code: &'static str, port: &str, message: String) -> Diagnostic {
-        let at = self.template.port_pointer(self.node, port);
-        self.node(code, message).at(at).in_port(port)
-    }
 }
 
 /// Expands the graph. What is wrong is reported and left out: the result is then not to be used.
@@ -328,73 +291,6 @@ fn sub_graph_inputs(
     bounds
 }
 
-/// The same value seen as a type, if it converts.
-fn convert(
-    context: &mut Context<'_>,
-    graph: &Graph,
-    place: &Place<'_, '_>,
-    port: &str,
-    ty: Type,
-    bound: Bound,
-) -> Option<Bound> {
-    if bound.seen.converts_to(ty) {
-        let Source::Literal(value) = &bound.source else {
-            return Some(Bound { seen: ty, ..bound });
-        };
-        let value = literal::from_numbers(&value.numbers(), ty).unwrap_or_else(|| value.clone());
-        return Some(Bound {
-            source: Source::Literal(value),
-            from: ty,
-            seen: ty,
-        });
-    }
-    let message = format!("`{port}` wants a `{ty}`, not a `{}`", bound.seen);
-    let help = conversion(context.specs, bound.seen, ty);
-    let mut diagnostic = place
-        .port("type-mismatch", port, message)
-        .because(origin(graph, &bound))
-        .help_if(help);
-    if matches!(bound.seen, Type::Color3 | Type::Color4) && ty == Type::Vector2 {
-        diagnostic =
-            diagnostic.because("a colour is no position: its channels are not coordinates");
-    }
-    context.report(diagnostic);
-    None
-}
-
-/// Where a value comes from, as a reason.
-fn origin(graph: &Graph, bound: &Bound) -> String {
-    match &bound.source {
-        Source::Literal(_) => format!("the literal is a `{}`", bound.seen),
-        Source::Surface => format!("the surface's coordinates are a `{}`", bound.seen),
-        Source::Parameter(parameter) => {
-            let name = &graph.parameters[parameter.index()].name;
-            format!("the input `{name}` is a `{}`", bound.seen)
-        }
-        Source::Node(node) => {
-            let node = graph.node(*node);
-            format!(
-                "the node `{}` (`{}`) is a `{}`",
-                node.name, node.spec.name, bound.seen
-            )
-        }
-    }
-}
-
-/// Which node of the catalogue would turn one type into another.
-fn conversion(specs: &[&'static NodeSpec], from: Type, to: Type) -> Option<String> {
-    let known = |name: &&&str| specs.iter().any(|spec| spec.name == **name);
-    let names: &[&str] = match (from, to) {
-        (Type::Color3 | Type::Color4, Type::Float) => &["luminance", "extract"],
-        (_, Type::Float) => &["extract"],
-        (_, Type::Vector2) => &["combine2", "convert"],
-        (Type::Vector2 | Type::Vector3 | Type::Vector4, Type::Color3) => &["combine3", "convert"],
-        _ => &["convert"],
-    };
-    let names: Vec<&str> = names.iter().filter(known).copied().collect();
-    (!names.is_empty()).then(|| format!("convert it with `{}`", names.join("` or `")))
-}
-
 /// Makes a node.
 fn node(
     context: &mut Context<'_>,
@@ -563,55 +459,4 @@ fn common_type(
         }
     }
     Some(common)
-}
-
-/// Whether a value lies in the range of a port.
-fn check_range(
-    context: &mut Context<'_>,
-    graph: &Graph,
-    place: &Place<'_, '_>,
-    port: &crate::PortSpec,
-    source: &Source,
-) -> bool {
-    let (refusal, what) = match source {
-        Source::Literal(Literal::Numbers(ty, numbers)) => {
-            let numbers = &numbers[..ty.components()];
-            let refused = numbers
-                .iter()
-                .find_map(|x| Some((range::refusal(&port.range, *x, *x)?, x)));
-            match refused {
-                Some((refusal, number)) => (refusal, format!("`{}` is {number}", port.name)),
-                None => return true,
-            }
-        }
-        Source::Literal(Literal::Integer(number)) => {
-            match range::refusal(&port.range, *number as f32, *number as f32) {
-                Some(refusal) => (refusal, format!("`{}` is {number}", port.name)),
-                None => return true,
-            }
-        }
-        Source::Parameter(parameter) => {
-            let parameter = &graph.parameters[parameter.index()];
-            let (low, high) = range::bounds(parameter);
-            match range::refusal(&port.range, low, high) {
-                Some(refusal) => {
-                    let bounds = range::shown_bounds(parameter.min, parameter.max);
-                    let what = format!(
-                        "`{}` is the input `{}`, which can be {bounds}",
-                        port.name, parameter.name
-                    );
-                    let help = format!("narrow `min` and `max` of the input `{}`", parameter.name);
-                    let message = format!("{what}: {refusal}");
-                    let diagnostic = place.port("out-of-range", port.name, message);
-                    let reason = "an input is checked over all of its [min, max]";
-                    context.report(diagnostic.because(reason).help(help));
-                    return false;
-                }
-                None => return true,
-            }
-        }
-        Source::Literal(_) | Source::Node(_) | Source::Surface => return true,
-    };
-    context.report(place.port("out-of-range", port.name, format!("{what}: {refusal}")));
-    false
 }

@@ -39,8 +39,7 @@ fn class(ty: &str, inputs: &[(&str, &str)]) -> Class {
         inputs.join(",")
     );
     let checked = checked(&nodes);
-    let class = checked.signal(find(&checked, "x")).class;
-    class
+    checked.signal(find(&checked, "x")).class
 }
 
 #[test]

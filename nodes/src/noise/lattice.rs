@@ -40,6 +40,13 @@ pub(crate) struct Octaves {
     pub(crate) seed: i32,
 }
 
+impl Octaves {
+    /// The standard deviation of the sum.
+    pub(crate) fn sd(self) -> f32 {
+        (0..self.count as i32).map(|k| self.diminish.powi(2 * k)).sum::<f32>().sqrt()
+    }
+}
+
 /// Which derivatives a mode needs.
 fn orders(mode: Mode) -> usize {
     match mode {

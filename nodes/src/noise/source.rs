@@ -68,16 +68,21 @@ pub(crate) fn position(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
         .collect()
 }
 
-/// The field as a signal: pivot + amplitude/4 · X.
+/// No noise leaves this many standard deviations in practice (once in 10⁶ points of a Gaussian).
+const EXTENT: f32 = 5.0;
+
+/// The field of this standard deviation as a signal: pivot + amplitude/4 · X.
 pub(crate) fn shaped(
     lower: &mut Lower<'_>,
     node: &Node,
     field: &Field,
+    sd: f32,
     position: &[Signal],
 ) -> Vec<Signal> {
     let amplitude = lower.signal(node, "amplitude");
     let pivot = lower.signal(node, "pivot");
-    let unit = field.at(lower, position);
+    let extent = EXTENT * sd;
+    let unit = field.at(lower, position).with_range([-extent, extent]);
     let b = lower.b();
     let quarter = b.f32(0.25);
     let amplitude = amplitude.scale(b, quarter);

@@ -1,0 +1,132 @@
+//! Nodes that treat each component alone, and the operations that several of them share.
+
+use mipless_codegen::ir::Value;
+use mipless_codegen::moments::{Reciprocal, Signal, Transfer};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::Node;
+
+/// `f` of each component of a port.
+pub(crate) fn unary(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    port: &str,
+    mut f: impl FnMut(&mut Lower<'_>, &Signal) -> Signal,
+) -> Bundle {
+    let bundle = lower.bundle(node, port);
+    bundle.iter().map(|x| f(lower, x)).collect()
+}
+
+/// `f` of each pair of components of two ports of the same type.
+pub(crate) fn binary(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    [first, second]: [&str; 2],
+    mut f: impl FnMut(&mut Lower<'_>, &Signal, &Signal) -> Signal,
+) -> Bundle {
+    let (x, y) = (lower.bundle(node, first), lower.bundle(node, second));
+    x.iter().zip(&y).map(|(x, y)| f(lower, x, y)).collect()
+}
+
+/// `f` of each triple of components of three ports of the same type.
+pub(crate) fn ternary(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    [first, second, third]: [&str; 3],
+    mut f: impl FnMut(&mut Lower<'_>, &Signal, &Signal, &Signal) -> Signal,
+) -> Bundle {
+    let (x, y) = (lower.bundle(node, first), lower.bundle(node, second));
+    let z = lower.bundle(node, third);
+    x.iter()
+        .zip(&y)
+        .zip(&z)
+        .map(|((x, y), z)| f(lower, x, y, z))
+        .collect()
+}
+
+/// T(X).
+pub(crate) fn transfer(lower: &mut Lower<'_>, x: &Signal, t: &dyn Transfer) -> Signal {
+    if !x.is_certain(lower.b()) {
+        lower.bends();
+    }
+    lower.algebra.transfer(x, t)
+}
+
+/// X · Y, which is linear where one of them is certain.
+pub(crate) fn product(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
+    let b = lower.b();
+    // A position keeps its integer cell where the other factor is the number.
+    if y.cell.is_none() && y.is_certain(b) {
+        return x.scale(b, y.mean);
+    }
+    if x.cell.is_none() && x.is_certain(b) {
+        return y.scale(b, x.mean);
+    }
+    if !x.is_certain(b) && !y.is_certain(b) {
+        lower.bends();
+    }
+    lower.algebra.product(x, y)
+}
+
+/// X / Y: the product with the reciprocal, which is linear where Y is certain.
+pub(crate) fn quotient(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
+    let b = lower.b();
+    let constants = (b.as_constant(x.mean), b.as_constant(y.mean));
+    if let (Some(numerator), Some(divisor)) = constants
+        && x.is_certain(b)
+        && y.is_certain(b)
+        && divisor != 0.0
+    {
+        // A number over a number is rounded once.
+        return Signal::constant(b, numerator / divisor);
+    }
+    let inverse = transfer(lower, y, &Reciprocal);
+    product(lower, x, &inverse)
+}
+
+/// X − Y; a position keeps its bits where Y is 0.
+pub(crate) fn difference(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
+    let b = lower.b();
+    if y.cell.is_none() && b.is_zero(y.mean) && y.is_certain(b) {
+        x.clone()
+    } else {
+        x.sub(b, y)
+    }
+}
+
+/// X + Y; a position keeps its bits where Y is 0.
+pub(crate) fn sum(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
+    let b = lower.b();
+    if y.cell.is_none() && b.is_zero(y.mean) && y.is_certain(b) {
+        x.clone()
+    } else {
+        x.add(b, y)
+    }
+}
+
+/// The means of a port that is a number to the node, one a component; a spread is ignored.
+pub(crate) fn numbers(lower: &mut Lower<'_>, node: &Node, port: &str) -> Vec<Value> {
+    let bundle = lower.bundle(node, port);
+    bundle
+        .iter()
+        .map(|signal| signal.flat_mean(lower.b()))
+        .collect()
+}
+
+/// max(X, Y).
+pub(crate) fn maximum(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
+    bends_between(lower, x, y);
+    lower.algebra.maximum(x, y)
+}
+
+/// min(X, Y).
+pub(crate) fn minimum(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
+    bends_between(lower, x, y);
+    lower.algebra.minimum(x, y)
+}
+
+fn bends_between(lower: &mut Lower<'_>, x: &Signal, y: &Signal) {
+    let b = lower.b();
+    if !x.is_certain(b) || !y.is_certain(b) {
+        lower.bends();
+    }
+}

@@ -1,0 +1,69 @@
+//! Quotient.
+
+use crate::componentwise::{binary, quotient};
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
+    Range,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "divide",
+    aliases: &["div", "over", "math_divide"],
+    category: Category::Arithmetic,
+    summary: "The quotient of two signals.",
+    doc: Doc {
+        computes: "out = in1 / in2, for each component. A divisor nearer to 0 than 1e-6 is moved to \
+            ±1e-6.",
+        statistics: "By a number, linear and exact. By a varying signal: the product of in1 with the \
+            reciprocal of in2, whose moments under a Gaussian come from seven standard scores \
+            with positive weights. They exist only where in2 stays away from 0: its mean is kept \
+            at least four standard deviations from it. Approximate.",
+        accuracy: "By a number, exact to rounding. By a varying signal with |mean| ≥ 6 standard \
+            deviations, the mean is within 2e-4 of its value; nearer to 0 the quotient has no \
+            moments and the result is only bounded. Held by `codegen/src/moments/tests.rs` \
+            against dense numerical integration in f64.",
+        references: "Marsaglia 2006, *Ratios of Normal Variables*, §2 (no moments without truncation). \
+            Isserlis 1918, *On a formula for the product-moment coefficient of any order of a \
+            normal frequency distribution* (fourth moments from second ones). MaterialX 1.39 \
+            specification, node `divide`.",
+    },
+    inputs: &[
+        PortSpec::new("in1", PortType::Any, Default::Float(1.0), "The numerator.")
+            .range(Range::soft(-1.0, 1.0)),
+        PortSpec::new(
+            "in2",
+            PortType::Any,
+            Default::Float(1.0),
+            "The divisor; 0 is refused.",
+        )
+        .range(Range::soft(0.1, 4.0).nonzero()),
+    ],
+    output: OutputType::Widest,
+    class: class,
+    example: r#"{
+  "version": 1,
+  "name": "divide_example",
+  "nodes": {
+    "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
+    "divide": { "type": "divide", "inputs": { "in1": { "node": "bands" }, "in2": 4 } }
+  },
+  "outputs": { "out": { "node": "divide" } }
+}"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+/// By a number, linear; a varying divisor bends, and beside a varying numerator makes a product.
+fn class(inputs: &dyn InputView) -> Behaviour {
+    match (inputs.varies("in1"), inputs.varies("in2")) {
+        (_, false) => Behaviour::Linear,
+        (false, true) => Behaviour::Function,
+        (true, true) => Behaviour::Product,
+    }
+}
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    binary(lower, node, ["in1", "in2"], quotient)
+}

@@ -1,0 +1,64 @@
+//! One component.
+
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "extract",
+    aliases: &[
+        "separate",
+        "separate_rgb",
+        "separate_color",
+        "decompose",
+        "channel",
+        "swizzle",
+    ],
+    category: Category::Channel,
+    summary: "One component of a vector or colour.",
+    doc: Doc {
+        computes: "out = in[index], counted from 0. An index beyond the components of the input takes \
+            the last one.",
+        statistics: "Exact: the component as it is.",
+        accuracy: "Exact. Held by `nodes/src/tests.rs`.",
+        references: "MaterialX 1.39 specification, node `extract`.",
+    },
+    inputs: &[
+        PortSpec::new(
+            "in",
+            PortType::Any,
+            Default::Float(0.0),
+            "The vector or colour.",
+        ),
+        PortSpec::new(
+            "index",
+            PortType::Exactly(Type::Integer),
+            Default::Integer(0),
+            "Which component.",
+        )
+        .uniform()
+        .range(Range::hard(0.0, 3.0)),
+    ],
+    output: OutputType::Exactly(Type::Float),
+    class: |_| Behaviour::Linear,
+    example: r#"{
+  "version": 1,
+  "name": "extract_example",
+  "nodes": {
+    "uv": { "type": "texcoord" },
+    "extract": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 1 } }
+  },
+  "outputs": { "out": { "node": "extract" } }
+}"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let mut bundle = lower.bundle(node, "in");
+    let index = lower.integer(node, "index").max(0) as usize;
+    let last = bundle.len() - 1;
+    vec![bundle.swap_remove(index.min(last))]
+}

@@ -1,0 +1,79 @@
+//! Linear interpolation.
+
+use crate::componentwise::{binary, product};
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
+    Range, Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "mix",
+    aliases: &["blend", "lerp", "mixrgb", "mix_color", "interpolate"],
+    category: Category::Arithmetic,
+    summary: "Goes from one signal to another by a mask.",
+    doc: Doc {
+        computes: "out = bg + mix · (fg − bg), for each component. The mask is not limited to [0, 1].",
+        statistics: "With a constant mask, or with a varying mask between constants, linear and exact. \
+            With both varying, a product of the mask and fg − bg: exact in mean and variance for \
+            jointly Gaussian signals, with the covariance between the mask and what it masks.",
+        accuracy: "Exact to rounding where it is linear; as `multiply` otherwise. Held by \
+            `nodes/src/tests.rs`.",
+        references: "Isserlis 1918, *On a formula for the product-moment coefficient of any order of a \
+            normal frequency distribution* (fourth moments from second ones). MaterialX 1.39 \
+            specification, node `mix`.",
+    },
+    inputs: &[
+        PortSpec::new(
+            "bg",
+            PortType::Any,
+            Default::Float(0.0),
+            "The result where the mask is 0.",
+        ),
+        PortSpec::new(
+            "fg",
+            PortType::Any,
+            Default::Float(0.0),
+            "The result where the mask is 1.",
+        ),
+        PortSpec::new(
+            "mix",
+            PortType::Exactly(Type::Float),
+            Default::Float(0.0),
+            "The mask.",
+        )
+        .range(Range::soft(0.0, 1.0)),
+    ],
+    output: OutputType::Widest,
+    class: class,
+    example: r##"{
+  "version": 1,
+  "name": "mix_example",
+  "nodes": {
+    "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
+    "mix": { "type": "mix", "inputs": { "bg": "#20303c", "fg": "#e8c27a", "mix": { "node": "bands" } } }
+  },
+  "outputs": { "out": { "node": "mix" } }
+}"##,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+/// Linear unless the mask varies together with what it masks.
+fn class(inputs: &dyn InputView) -> Behaviour {
+    if inputs.varies("mix") && (inputs.varies("bg") || inputs.varies("fg")) {
+        Behaviour::Product
+    } else {
+        Behaviour::Linear
+    }
+}
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let mask = lower.signal(node, "mix");
+    binary(lower, node, ["bg", "fg"], |lower, bg, fg| {
+        let across = fg.sub(lower.b(), bg);
+        let part = product(lower, &across, &mask);
+        bg.add(lower.b(), &part)
+    })
+}

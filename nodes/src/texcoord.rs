@@ -1,0 +1,41 @@
+//! The texture coordinates of the surface.
+
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "texcoord",
+    aliases: &["uv", "texture_coordinate", "texturecoordinate", "uvmap"],
+    category: Category::Input,
+    summary: "The texture coordinates of the surface.",
+    doc: Doc {
+        computes: "out = (u, v), in units of texture space.",
+        statistics: "Position: within the footprint exactly Gaussian with mean uv and covariance AAᵀ, A = \
+            s·[du dv], where du and dv are the changes of uv from a pixel to its neighbours and \
+            s is the standard deviation of the pixel filter in pixels. A box filter is replaced \
+            by the Gaussian of its variance, 1/12 square pixels.",
+        accuracy: "Exact for a surface that is flat within the pixel. The mean is carried as an integer \
+            cell and a fraction in [0, 1), so it keeps its detail up to coordinates of 8 \
+            million.",
+        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (Gaussian \
+            footprints under affine maps). MaterialX 1.39 specification, node `texcoord`.",
+    },
+    inputs: &[],
+    output: OutputType::Exactly(Type::Vector2),
+    class: |_| Behaviour::Position,
+    example: r#"{
+  "version": 1,
+  "name": "texcoord_example",
+  "nodes": {
+    "texcoord": { "type": "texcoord" }
+  },
+  "outputs": { "out": { "node": "texcoord" } }
+}"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+fn lower(lower: &mut Lower<'_>, _: &Node) -> Bundle {
+    lower.surface()
+}
