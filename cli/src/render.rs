@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     scene: scene::Arguments,
 
     /// The picture: .png (sRGB) or .exr (f32, linear)
-    #[arg(short, long = "out", alias = "file", value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
 
     /// auto, point, naive, ensemble, local, quad, split:4|7|16 or supersample:N

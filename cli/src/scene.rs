@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 
 /// The arguments.
 #[derive(Args, Debug)]
+#[group(skip)]
 pub(crate) struct Arguments {
     /// The graph, a JSON file; `-` is standard input
     #[arg(value_name = "GRAPH")]
