@@ -25,6 +25,8 @@ mod product;
 mod signal;
 mod smooth;
 mod tabulated;
+#[cfg(test)]
+mod tests;
 mod transfer;
 mod wave;
 
