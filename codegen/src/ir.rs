@@ -25,10 +25,16 @@
 
 mod build;
 mod op;
+#[cfg(test)]
+pub(crate) mod random;
+mod text;
+mod verify;
 
 pub use build::{Builder, FunctionRef};
 pub use op::{Op, OpInfo};
 pub(crate) use op::for_each_op;
+pub use text::ParseError;
+pub use verify::{Violation, verify};
 
 use rustc_hash::FxHashMap;
 

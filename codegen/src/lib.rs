@@ -2,5 +2,12 @@
 //!
 //! This crate knows no node by name: it receives node definitions as a slice.
 
+pub mod cpu;
 pub mod float;
 pub mod ir;
+mod lower;
+pub mod moments;
+pub mod target;
+pub mod wgsl;
+
+pub use lower::{Bundle, Lower, Method, NodeDef, Options, ParseMethodError, PixelFilter, compile};

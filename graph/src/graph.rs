@@ -84,7 +84,10 @@ impl Node {
     pub fn literal(&self, name: &str) -> &Literal {
         match &self.input(name).source {
             Source::Literal(literal) => literal,
-            other => panic!("input {name} of {} is not uniform: {other:?}", self.spec.name),
+            other => panic!(
+                "input {name} of {} is not uniform: {other:?}",
+                self.spec.name
+            ),
         }
     }
 }

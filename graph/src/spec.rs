@@ -93,22 +93,41 @@ pub struct Range {
 impl Range {
     /// Any finite number; the slider goes from `soft_min` to `soft_max`.
     pub const fn soft(soft_min: f32, soft_max: f32) -> Self {
-        Self { min: f32::MIN, max: f32::MAX, soft_min, soft_max, nonzero: false }
+        Self {
+            min: f32::MIN,
+            max: f32::MAX,
+            soft_min,
+            soft_max,
+            nonzero: false,
+        }
     }
 
     /// Numbers of `[min, max]`; the slider covers the same.
     pub const fn hard(min: f32, max: f32) -> Self {
-        Self { min, max, soft_min: min, soft_max: max, nonzero: false }
+        Self {
+            min,
+            max,
+            soft_min: min,
+            soft_max: max,
+            nonzero: false,
+        }
     }
 
     /// The same with another slider.
     pub const fn with_soft(self, soft_min: f32, soft_max: f32) -> Self {
-        Self { soft_min, soft_max, ..self }
+        Self {
+            soft_min,
+            soft_max,
+            ..self
+        }
     }
 
     /// The same without 0.
     pub const fn nonzero(self) -> Self {
-        Self { nonzero: true, ..self }
+        Self {
+            nonzero: true,
+            ..self
+        }
     }
 }
 
@@ -133,14 +152,30 @@ pub struct PortSpec {
 
 impl PortSpec {
     /// A port that takes a signal of this type; range soft [0, 1], dimensionless.
-    pub const fn new(name: &'static str, ty: PortType, default: Default, doc: &'static str) -> Self {
+    pub const fn new(
+        name: &'static str,
+        ty: PortType,
+        default: Default,
+        doc: &'static str,
+    ) -> Self {
         let uniform = matches!(ty, PortType::Choice(_) | PortType::Stops);
-        Self { name, ty, default, uniform, range: Range::soft(0.0, 1.0), unit: "dimensionless", doc }
+        Self {
+            name,
+            ty,
+            default,
+            uniform,
+            range: Range::soft(0.0, 1.0),
+            unit: "dimensionless",
+            doc,
+        }
     }
 
     /// The same, literal only.
     pub const fn uniform(self) -> Self {
-        Self { uniform: true, ..self }
+        Self {
+            uniform: true,
+            ..self
+        }
     }
 
     /// The same with a range.

@@ -30,8 +30,16 @@ pub enum Type {
 impl Type {
     /// Every type.
     pub const ALL: [Self; 10] = [
-        Self::Float, Self::Integer, Self::Boolean, Self::Vector2, Self::Vector3, Self::Vector4,
-        Self::Color3, Self::Color4, Self::String, Self::Filename,
+        Self::Float,
+        Self::Integer,
+        Self::Boolean,
+        Self::Vector2,
+        Self::Vector3,
+        Self::Vector4,
+        Self::Color3,
+        Self::Color4,
+        Self::String,
+        Self::Filename,
     ];
 
     /// MaterialX's name.
@@ -73,7 +81,9 @@ impl Type {
         match (self, other) {
             (a, b) if a == b => Some(a),
             (Float | Integer, Float | Integer) => Some(Float),
-            (Float | Integer, wide) | (wide, Float | Integer) if wide.components() > 1 => Some(wide),
+            (Float | Integer, wide) | (wide, Float | Integer) if wide.components() > 1 => {
+                Some(wide)
+            }
             (Color3, Color4) | (Color4, Color3) => Some(Color4),
             _ => None,
         }

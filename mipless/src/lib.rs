@@ -1,1 +1,78 @@
-//! Self-filtering procedural texture graphs: load, check, edit, compile and evaluate.
+//! Self-filtering procedural texture graphs for tools: load, check, edit, compile, evaluate.
+//!
+//! This crate needs no graphics device. A tour:
+//!
+//! # Load and check
+//! ```
+//! use mipless::Texture;
+//!
+//! let json = r##"{
+//!     "version": 1,
+//!     "name": "clouds",
+//!     "inputs": { "scale": { "type": "float", "value": 4.0, "min": 0.5, "max": 64 } },
+//!     "nodes": {
+//!         "noise": { "type": "fractal2d", "inputs": { "frequency": { "input": "scale" } } },
+//!         "color": { "type": "colorramp", "inputs": {
+//!             "in": { "node": "noise" },
+//!             "stops": [ { "at": -0.5, "value": "#2a5f9e" }, { "at": 0.5, "value": "#ffffff" } ] } }
+//!     },
+//!     "outputs": { "base_color": { "node": "color" } }
+//! }"##;
+//! let texture = Texture::from_json(json).expect("the graph has no mistakes");
+//! assert_eq!(texture.parameters()[0].name, "scale");
+//! assert_eq!(texture.outputs()[0].name, "base_color");
+//! // What the check says of each signal.
+//! assert!(texture.signals().len() >= 2);
+//! ```
+//!
+//! # Mistakes are located, all at once
+//! ```
+//! # use mipless::Texture;
+//! let mistakes = Texture::from_json(r#"{
+//!     "version": 1, "name": "oops",
+//!     "nodes": { "n": { "type": "nose2d", "inputs": { "seed": 0.5 } } },
+//!     "outputs": { "out": { "node": "m" } }
+//! }"#).expect_err("two mistakes");
+//! assert!(mistakes.len() >= 2);
+//! assert!(mistakes.iter().all(|d| d.pointer.is_some()));
+//! ```
+//!
+//! # Set an input, evaluate
+//! ```
+//! # use mipless::{Footprint, Method, Options, Texture};
+//! # let json = r##"{ "version": 1, "name": "clouds",
+//! #     "inputs": { "scale": { "type": "float", "value": 4.0, "min": 0.5, "max": 64 } },
+//! #     "nodes": { "noise": { "type": "fractal2d", "inputs": { "frequency": { "input": "scale" } } } },
+//! #     "outputs": { "height": { "node": "noise" } } }"##;
+//! let texture = Texture::from_json(json).expect("the graph has no mistakes");
+//! let mut evaluator = texture.evaluator(&Options { method: Method::Local, ..Options::default() });
+//! evaluator.set("scale", &[8.0]).expect("scale is a float from 0.5 to 64");
+//! let pixel = Footprint { uv: [0.25, 0.5], du: [0.01, 0.0], dv: [0.0, 0.01], ..Footprint::default() };
+//! let height = evaluator.evaluate(&[pixel]);
+//! assert!(height[0][0].is_finite());
+//! ```
+//!
+//! # Compile
+//! ```
+//! # use mipless::{Options, Texture, wgsl};
+//! # let texture = Texture::from_json(r##"{ "version": 1, "name": "clouds",
+//! #     "nodes": { "noise": { "type": "noise2d" } },
+//! #     "outputs": { "height": { "node": "noise" } } }"##).expect("the graph has no mistakes");
+//! let program = texture.compile(&Options::default());
+//! let shader = wgsl::emit(&program, &wgsl::Options::default());
+//! assert!(shader.source.contains("fn clouds(footprint: Footprint"));
+//! ```
+
+mod evaluator;
+mod texture;
+
+pub use evaluator::{SetError, TextureEvaluator};
+pub use mipless_codegen::cpu::Footprint;
+pub use mipless_codegen::ir::Program;
+pub use mipless_codegen::{Method, NodeDef, Options, PixelFilter, target, wgsl};
+pub use mipless_graph::{
+    Checked, Diagnostic, Document, Literal, NodeSpec, Output, Parameter, Severity, Signal, Type,
+    parse_setting, schema,
+};
+pub use mipless_nodes::catalogue;
+pub use texture::{Texture, specs};

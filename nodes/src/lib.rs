@@ -4,6 +4,7 @@
 //! that builds IR through the moment algebra. Nothing else knows a node by name.
 
 mod componentwise;
+mod noise;
 mod page;
 
 mod absval;
@@ -15,18 +16,21 @@ mod combine3;
 mod constant;
 mod divide;
 mod extract;
+mod fractal2d;
 mod invert;
 mod luminance;
 mod max;
 mod min;
 mod mix;
 mod multiply;
+mod noise2d;
 mod place2d;
 mod power;
 mod range;
 mod rotate2d;
 mod sin;
 mod smoothstep;
+mod spectralnoise2d;
 mod step;
 mod stripes;
 mod subtract;
@@ -42,6 +46,10 @@ static CATALOGUE: &[NodeDef] = &[
     // Input.
     constant::DEF,
     texcoord::DEF,
+    // Noise.
+    fractal2d::DEF,
+    noise2d::DEF,
+    spectralnoise2d::DEF,
     // Pattern.
     checkerboard::DEF,
     stripes::DEF,

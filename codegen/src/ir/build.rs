@@ -413,6 +413,51 @@ fn without_dead_code(function: Function) -> Function {
     }
 }
 
+impl Module {
+    /// The module without the functions that the entry does not reach, each name used once.
+    pub fn pruned(mut self) -> Self {
+        let mut live = vec![false; self.functions.len()];
+        if let Some(entry) = live.last_mut() {
+            *entry = true;
+        }
+        for index in (0..self.functions.len()).rev() {
+            if live[index] {
+                for inst in &self.functions[index].insts {
+                    if let Inst::Call(f, _) | Inst::Fold { function: f, .. } = inst {
+                        live[f.index()] = true;
+                    }
+                }
+            }
+        }
+        let mut moved = Vec::with_capacity(live.len());
+        let mut next = 0;
+        for &keep in &live {
+            moved.push(FunctionId(next));
+            next += u32::from(keep);
+        }
+        let mut index = 0;
+        self.functions.retain(|_| {
+            index += 1;
+            live[index - 1]
+        });
+        let mut taken: FxHashMap<String, u32> = FxHashMap::default();
+        // The entry keeps its name.
+        for function in self.functions.iter_mut().rev() {
+            for inst in &mut function.insts {
+                if let Inst::Call(f, _) | Inst::Fold { function: f, .. } = inst {
+                    *f = moved[f.index()];
+                }
+            }
+            let count = taken.entry(function.name.clone()).or_default();
+            *count += 1;
+            if *count > 1 {
+                function.name = format!("{}_{count}", function.name);
+            }
+        }
+        self
+    }
+}
+
 /// Replaces every operand of an instruction.
 fn renumber(inst: &mut Inst, to: impl Fn(Value) -> Value) {
     match inst {

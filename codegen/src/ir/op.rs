@@ -81,9 +81,9 @@ macro_rules! for_each_op {
             CastU "cast_u" (a: i32) -> u32 { a as u32 } "u32({a})" "exact" "The same bits.";
             CastI "cast_i" (a: u32) -> i32 { a as i32 } "i32({a})" "exact" "The same bits.";
             // Choice.
-            Select "select" (a: bool, b: F, c: F) -> F { if a { b } else { c } } "select({c}, {b}, {a})" "exact" "b where a holds, else c.";
-            SelectI "iselect" (a: bool, b: i32, c: i32) -> i32 { if a { b } else { c } } "select({c}, {b}, {a})" "exact" "b where a holds, else c.";
-            SelectU "uselect" (a: bool, b: u32, c: u32) -> u32 { if a { b } else { c } } "select({c}, {b}, {a})" "exact" "b where a holds, else c.";
+            Select "select" (a: bool, b: F, c: F) -> F { std::hint::select_unpredictable(a, b, c) } "select({c}, {b}, {a})" "exact" "b where a holds, else c.";
+            SelectI "iselect" (a: bool, b: i32, c: i32) -> i32 { std::hint::select_unpredictable(a, b, c) } "select({c}, {b}, {a})" "exact" "b where a holds, else c.";
+            SelectU "uselect" (a: bool, b: u32, c: u32) -> u32 { std::hint::select_unpredictable(a, b, c) } "select({c}, {b}, {a})" "exact" "b where a holds, else c.";
         }
     };
 }

@@ -1,0 +1,446 @@
+//! From a checked graph to a program: every node lowers itself into the IR through the moment
+//! algebra, in topological order.
+//!
+//! A method that repeats the graph (`supersample`, `split`) is a fold over one function of it, and
+//! `auto` is a branch between two functions: nothing is ever unrolled.
+
+mod entry;
+mod fusion;
+mod method;
+mod sampling;
+mod symbols;
+
+pub use method::{Method, ParseMethodError, PixelFilter};
+
+use crate::ir::{
+    Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
+};
+use crate::moments::{Algebra, Mode, Sampled, Signal, Symbol};
+use mipless_graph::{Checked, Graph, Literal, Node, NodeId, NodeSpec, Source, Stops, Type};
+use rustc_hash::FxHashMap;
+use std::{cell::RefCell, rc::Rc};
+
+/// The components of a node's output.
+pub type Bundle = Vec<Signal>;
+
+/// A node type: its spec, which holds its statistics rule, and its lowering.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeDef {
+    /// Everything but the lowering.
+    pub spec: &'static NodeSpec,
+    /// Builds the node's output: as many signals as its type has components.
+    pub lower: fn(&mut Lower<'_>, &Node) -> Bundle,
+}
+
+/// What to compile for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The method.
+    pub method: Method,
+    /// The pixel filter.
+    pub filter: PixelFilter,
+    /// Whether the outputs' variances are results too.
+    pub moments: bool,
+    /// Selects the pattern of `supersample`; two seeds are independent.
+    pub seed: u32,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { method: Method::Auto, filter: PixelFilter::default(), moments: false, seed: 0 }
+    }
+}
+
+/// Compiles a checked graph.
+///
+/// # Panics
+/// If `catalogue` is not the one that the graph was resolved with.
+pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> Program {
+    let graph = checked.graph();
+    let interface = Interface {
+        name: identifier(&graph.name),
+        parameters: (graph.parameters.iter())
+            .map(|p| Port { name: p.name.clone(), ty: p.ty, default: p.value.numbers() })
+            .collect(),
+        outputs: (graph.outputs.iter())
+            .map(|o| Port { name: o.name.clone(), ty: o.ty, default: Vec::new() })
+            .collect(),
+        moments: options.moments,
+    };
+    let live = symbols::live(graph);
+    let inner = symbols::inner(graph, &live);
+    let (functions, fused) = (RefCell::default(), RefCell::default());
+    let compiler = Compiler { graph, catalogue, options, live, functions, fused, inner };
+    let mut module = Module::default();
+    entry::build(&compiler, &mut module, &interface.name);
+    Program { module: module.pruned(), interface }
+}
+
+/// A lower-snake-case identifier from a graph's name.
+fn identifier(name: &str) -> String {
+    let mut out: String = (name.chars())
+        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' })
+        .collect();
+    if out.is_empty() || out.starts_with(|c: char| c.is_ascii_digit()) || out.starts_with('_') {
+        out.insert_str(0, "texture");
+    }
+    out
+}
+
+/// What all functions of a compilation share.
+struct Compiler<'a> {
+    graph: &'a Graph,
+    catalogue: &'a [NodeDef],
+    options: &'a Options,
+    /// How many live edges read each node's output.
+    live: Vec<u32>,
+    /// The functions that nodes share, by their keys.
+    functions: RefCell<FxHashMap<String, FunctionRef>>,
+    /// The fused functions of nodes, sampled over their domains: one for each component.
+    fused: RefCell<FxHashMap<usize, Rc<Vec<Sampled>>>>,
+    /// Whether something but an output reads each node's output.
+    inner: Vec<bool>,
+}
+
+/// The parameters of an entry or of a function that stands for the graph.
+struct Arguments {
+    footprint: [Value; 8],
+    parameters: Vec<Value>,
+}
+
+impl Arguments {
+    fn declare(b: &mut Builder, graph: &Graph) -> Self {
+        let footprint = FOOTPRINT.map(|(name, ty)| b.param(name, ty));
+        let mut parameters = Vec::new();
+        for parameter in &graph.parameters {
+            let components = parameter.ty.components();
+            for i in 0..components {
+                let name = if components == 1 {
+                    identifier(&parameter.name)
+                } else {
+                    format!("{}_{i}", identifier(&parameter.name))
+                };
+                let ty = match parameter.ty {
+                    Type::Integer => Scalar::I32,
+                    Type::Boolean => Scalar::Bool,
+                    _ => Scalar::F32,
+                };
+                // Two names may meet in one identifier.
+                let name = format!("p{}_{name}", parameters.len());
+                parameters.push(b.param(name, ty));
+            }
+        }
+        Self { footprint, parameters }
+    }
+
+    fn all(&self) -> Vec<Value> {
+        self.footprint.iter().chain(&self.parameters).copied().collect()
+    }
+}
+
+/// The state of the lowering of one function of the graph; what nodes build through.
+pub struct Lower<'a> {
+    /// The algebra and the builder.
+    pub algebra: Algebra,
+    module: &'a mut Module,
+    compiler: &'a Compiler<'a>,
+    arguments: Arguments,
+    /// s: the standard deviation of the pixel filter, in pixels.
+    filter_sd: f32,
+    bundles: Vec<Option<Bundle>>,
+    carriers: symbols::Carriers,
+    chains: Vec<Option<fusion::Chain>>,
+    parameter_scalars: Vec<usize>,
+    /// The footprint of each source, in wavelengths of its dominant detail.
+    footprints: Vec<Value>,
+    /// Whether something that is not linear follows a source.
+    nonlinear: bool,
+}
+
+impl<'a> Lower<'a> {
+    fn new(
+        compiler: &'a Compiler<'a>,
+        module: &'a mut Module,
+        mut b: Builder,
+        mode: Mode,
+    ) -> Self {
+        let arguments = Arguments::declare(&mut b, compiler.graph);
+        Self::with(compiler, module, Algebra::new(b, mode), arguments)
+    }
+
+    fn with(
+        compiler: &'a Compiler<'a>,
+        module: &'a mut Module,
+        algebra: Algebra,
+        arguments: Arguments,
+    ) -> Self {
+        let mut parameter_scalars = Vec::new();
+        let mut next = 0;
+        for parameter in &compiler.graph.parameters {
+            parameter_scalars.push(next);
+            next += parameter.ty.components();
+        }
+        Self {
+            algebra,
+            module,
+            compiler,
+            arguments,
+            filter_sd: compiler.options.filter.sd(),
+            bundles: vec![None; compiler.graph.nodes.len()],
+            carriers: symbols::Carriers::default(),
+            chains: vec![None; compiler.graph.nodes.len()],
+            parameter_scalars,
+            footprints: Vec::new(),
+            nonlinear: false,
+        }
+    }
+
+    /// Lowers every live node.
+    fn run(&mut self) {
+        let graph = self.compiler.graph;
+        let mut uses = self.compiler.live.clone();
+        for (index, node) in graph.nodes.iter().enumerate() {
+            if self.compiler.live[index] == 0 {
+                continue;
+            }
+            let forks = self.compiler.live[index] > 1;
+            self.algebra.shares = forks;
+            let kept = forks.then(|| self.algebra.next_symbol());
+            let definition = &self.compiler.catalogue[node.definition];
+            assert_eq!(definition.spec.name, node.spec.name, "the catalogue of the graph");
+            self.algebra.bent = false;
+            let mut bundle = (definition.lower)(self, node);
+            assert_eq!(bundle.len(), node.ty.components(), "components of {}", node.spec.name);
+            self.nonlinear |= self.algebra.bent;
+            if let Some(fused) = self.fuse(index, node) {
+                bundle = fused;
+            }
+            self.carriers.born(&bundle);
+            // Inputs that nothing else reads are gone: a symbol that only this signal still carries
+            // is nobody's business.
+            for input in &node.inputs {
+                if let Source::Node(id) = input.source {
+                    uses[id.index()] -= 1;
+                    if uses[id.index()] == 0
+                        && let Some(dead) = self.bundles[id.index()].take()
+                    {
+                        self.carriers.died(&dead);
+                    }
+                }
+            }
+            let b = &mut self.algebra.b;
+            self.carriers.retire(b, &mut bundle, kept.unwrap_or(Symbol(u32::MAX)));
+            self.name(node, &bundle);
+            if forks {
+                for signal in &mut bundle {
+                    signal.hermite = Some(self.algebra.fresh_symbol());
+                }
+            }
+            self.bundles[index] = Some(bundle);
+        }
+    }
+
+    fn name(&mut self, node: &Node, bundle: &Bundle) {
+        let name = identifier(&node.name);
+        let letters: &[&str] = match (node.ty, bundle.len()) {
+            (_, 1) => &[""],
+            (Type::Color3 | Type::Color4, _) => &["_r", "_g", "_b", "_a"],
+            _ => &["_x", "_y", "_z", "_w"],
+        };
+        let b = &mut self.algebra.b;
+        for (signal, letter) in bundle.iter().zip(letters) {
+            b.name(signal.mean, format!("{name}{letter}"));
+            b.name(signal.g[0], format!("{name}{letter}_gx"));
+            b.name(signal.g[1], format!("{name}{letter}_gy"));
+            b.name(signal.private, format!("{name}{letter}_rest"));
+        }
+    }
+
+    /// The means, then (if demanded) the variances of all outputs, with names.
+    fn results(&mut self) -> Vec<(String, Value)> {
+        let graph = self.compiler.graph;
+        let (mut means, mut variances) = (Vec::new(), Vec::new());
+        for output in &graph.outputs {
+            let bundle = self.bundles[output.node.index()].clone().expect("outputs are live");
+            for (i, signal) in bundle.iter().enumerate() {
+                let name = format!("{}_{i}", identifier(&output.name));
+                let b = &mut self.algebra.b;
+                means.push((name.clone(), signal.flat_mean(b)));
+                if self.compiler.options.moments {
+                    variances.push((format!("{name}_variance"), signal.variance(b)));
+                }
+            }
+        }
+        means.extend(variances);
+        means
+    }
+
+    // What nodes ask.
+
+    /// The builder of the function.
+    pub fn b(&mut self) -> &mut Builder {
+        &mut self.algebra.b
+    }
+
+    /// Which moments are carried.
+    pub fn mode(&self) -> Mode {
+        self.algebra.mode
+    }
+
+    /// A function of the module, built once for each key; the key names whatever it depends on.
+    pub fn function(
+        &mut self,
+        key: &str,
+        build: impl FnOnce(&mut Module) -> FunctionRef,
+    ) -> FunctionRef {
+        if let Some(function) = self.compiler.functions.borrow().get(key) {
+            return function.clone();
+        }
+        let function = build(self.module);
+        self.compiler.functions.borrow_mut().insert(key.to_owned(), function.clone());
+        function
+    }
+
+    /// The surface's position: cell and fraction, g = A.
+    pub fn surface(&mut self) -> Bundle {
+        let [cell_x, cell_y, u, v, du_dx, dv_dx, du_dy, dv_dy] = self.arguments.footprint;
+        let s = self.filter_sd;
+        let spreads = self.algebra.mode.filters();
+        let b = &mut self.algebra.b;
+        let zero = b.f32(0.0);
+        [(cell_x, u, du_dx, du_dy), (cell_y, v, dv_dx, dv_dy)]
+            .map(|(cell, fraction, x, y)| {
+                let start = Signal { cell: Some(cell), ..Signal::certain(b, zero) };
+                let mut signal = start.offset(b, fraction);
+                if signal.cell.is_none() || b.is_zero(fraction) {
+                    signal.cell = Some(cell);
+                }
+                if spreads {
+                    signal.g = [b.scale(x, s), b.scale(y, s)];
+                }
+                signal
+            })
+            .to_vec()
+    }
+
+    /// The signals of an input, of the type that the node sees.
+    ///
+    /// # Panics
+    /// If the node has no such input.
+    pub fn bundle(&mut self, node: &Node, port: &str) -> Bundle {
+        let input = node.input(port);
+        let bundle = match &input.source {
+            Source::Literal(literal) => {
+                let b = &mut self.algebra.b;
+                literal.numbers().into_iter().map(|x| Signal::constant(b, x)).collect()
+            }
+            Source::Node(id) => self.output(*id),
+            Source::Surface => self.surface(),
+            Source::Parameter(id) => {
+                let parameter = &self.compiler.graph.parameters[id.index()];
+                let first = self.parameter_scalars[id.index()];
+                let range = match (parameter.min, parameter.max) {
+                    (Some(low), Some(high)) => [low, high],
+                    _ => [f32::NEG_INFINITY, f32::INFINITY],
+                };
+                (0..parameter.ty.components())
+                    .map(|i| {
+                        let value = self.arguments.parameters[first + i];
+                        let b = &mut self.algebra.b;
+                        let value = match b.ty(value) {
+                            Scalar::I32 => b.float_i(value),
+                            Scalar::Bool => {
+                                let (one, zero) = (b.f32(1.0), b.f32(0.0));
+                                b.select(value, one, zero)
+                            }
+                            _ => value,
+                        };
+                        Signal::certain(b, value).with_range(range)
+                    })
+                    .collect()
+            }
+        };
+        self.promote(bundle, input.ty)
+    }
+
+    fn output(&self, id: NodeId) -> Bundle {
+        self.bundles[id.index()].clone().expect("an input is lowered before its user")
+    }
+
+    /// Floats broadcast; a colour gains an alpha of 1.
+    fn promote(&mut self, mut bundle: Bundle, to: Type) -> Bundle {
+        let components = to.components();
+        if bundle.len() == 1 && components > 1 {
+            // A float as a colour with alpha is opaque.
+            let opaque = to == Type::Color4;
+            bundle = vec![bundle[0].clone(); components];
+            if opaque {
+                bundle[3] = Signal::constant(&mut self.algebra.b, 1.0);
+            }
+        }
+        while bundle.len() < components {
+            bundle.push(Signal::constant(&mut self.algebra.b, 1.0));
+        }
+        bundle
+    }
+
+    /// The one signal of a float input.
+    pub fn signal(&mut self, node: &Node, port: &str) -> Signal {
+        let mut bundle = self.bundle(node, port);
+        assert_eq!(bundle.len(), 1, "{port} of {} is a float", node.spec.name);
+        bundle.remove(0)
+    }
+
+    /// The mean of a float input that is a number to this node, such as an amplitude; where it
+    /// varies over the surface its own spread is ignored.
+    pub fn number(&mut self, node: &Node, port: &str) -> Value {
+        let signal = self.signal(node, port);
+        signal.flat_mean(&mut self.algebra.b)
+    }
+
+    /// A uniform integer.
+    pub fn integer(&self, node: &Node, port: &str) -> i32 {
+        match node.literal(port) {
+            Literal::Integer(i) => *i,
+            other => other.numbers()[0] as i32,
+        }
+    }
+
+    /// A uniform number.
+    pub fn float(&self, node: &Node, port: &str) -> f32 {
+        node.literal(port).numbers()[0]
+    }
+
+    /// A uniform truth value.
+    pub fn flag(&self, node: &Node, port: &str) -> bool {
+        matches!(node.literal(port), Literal::Boolean(true))
+    }
+
+    /// The chosen name of a uniform enumeration.
+    pub fn choice<'n>(&self, node: &'n Node, port: &str) -> &'n str {
+        match node.literal(port) {
+            Literal::Text(text) => text,
+            other => panic!("{port} of {} is an enumeration: {other:?}", node.spec.name),
+        }
+    }
+
+    /// The stops of a uniform ramp.
+    pub fn stops<'n>(&self, node: &'n Node, port: &str) -> &'n Stops {
+        match node.literal(port) {
+            Literal::Stops(stops) => stops,
+            other => panic!("{port} of {} is a ramp: {other:?}", node.spec.name),
+        }
+    }
+
+    /// Reports the footprint of a source, in wavelengths of its dominant detail: `auto` and `split`
+    /// decide by it.
+    pub fn source_footprint(&mut self, wavelengths: Value) {
+        self.footprints.push(wavelengths);
+    }
+
+    /// Reports that the node is not linear in a signal with a spread. The algebra's operations do
+    /// so themselves.
+    pub fn bends(&mut self) {
+        self.algebra.bent = true;
+    }
+}

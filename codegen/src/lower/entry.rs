@@ -1,0 +1,175 @@
+//! Entries: each method is a way to make an entry from functions of the graph.
+
+use super::{Arguments, Compiler, Lower, Method, sampling};
+use crate::ir::{Builder, FunctionRef, Module, Type as Scalar, Value};
+use crate::moments::Mode;
+
+/// The largest change of texture coordinates per pixel that is told apart from an infinite one.
+const LARGEST_FOOTPRINT: f32 = 1e9;
+
+/// Adds the entry of the compiled method to the module, as its last function.
+pub(super) fn build(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
+    let options = compiler.options;
+    let graph = |module: &mut Module, mode, suffix: &str| {
+        graph_function(compiler, module, mode, &format!("{name}{suffix}"))
+    };
+    match options.method {
+        Method::Point => entry_over(compiler, module, name, |m| graph(m, Mode::Point, "_point").0),
+        Method::Naive => entry_over(compiler, module, name, |m| graph(m, Mode::Naive, "_naive").0),
+        Method::Ensemble => {
+            entry_over(compiler, module, name, |m| graph(m, Mode::Ensemble, "_ensemble").0);
+        }
+        Method::Local => entry_over(compiler, module, name, |m| graph(m, Mode::Local, "_local").0),
+        Method::Quad => entry_over(compiler, module, name, |m| graph(m, Mode::Quad, "_quad").0),
+        Method::Auto => auto(compiler, module, name),
+        Method::Supersample(samples) => sampling::supersample(compiler, module, name, samples),
+        Method::Split(k) => sampling::split(compiler, module, name, k),
+    }
+}
+
+/// A function of the graph in one mode; whether anything in it is not linear.
+pub(super) fn graph_function(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    mode: Mode,
+    name: &str,
+) -> (FunctionRef, bool) {
+    let doc = match mode {
+        Mode::Point => "The texture at a point.",
+        Mode::Naive => "The texture of the filtered sources.",
+        Mode::Ensemble => "The filtered texture, by one variance per source.",
+        Mode::Local => "The filtered texture, by means, gradients and remainders.",
+        Mode::Quad => "The filtered texture, by means, gradients, Hessians and remainders.",
+    };
+    let mut lower = Lower::new(compiler, module, Builder::new(name, doc), mode);
+    lower.run();
+    let results = lower.results();
+    let nonlinear = lower.nonlinear;
+    let mut b = lower.algebra.b;
+    for (name, value) in results {
+        b.result(name, value);
+    }
+    (b.finish(module), nonlinear)
+}
+
+/// A function of the graph that gives the largest and the smallest footprint of its sources that
+/// matter, in wavelengths: `None` without sources.
+pub(super) fn footprint_function(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    name: &str,
+    reduce: impl Fn(&mut Builder, &[Value]) -> Value,
+) -> Option<FunctionRef> {
+    let doc = "What the footprint is to the sources, in their wavelengths.";
+    let mut lower = Lower::new(compiler, module, Builder::new(name, doc), Mode::Local);
+    lower.run();
+    let footprints = std::mem::take(&mut lower.footprints);
+    let mut b = lower.algebra.b;
+    if footprints.is_empty() {
+        return None;
+    }
+    let reduced = reduce(&mut b, &footprints);
+    b.result("result", reduced);
+    Some(b.finish(module))
+}
+
+/// The entry that passes a footprint made finite on to one function.
+fn entry_over(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    name: &str,
+    function: impl FnOnce(&mut Module) -> FunctionRef,
+) {
+    let function = function(module);
+    let mut b = Builder::new(name, "The texture over a footprint.");
+    let arguments = Arguments::declare(&mut b, compiler.graph);
+    let arguments = finite(&mut b, &arguments);
+    let results = b.call(&function, &arguments);
+    finish(module, b, &function, &results);
+}
+
+pub(super) fn finish(module: &mut Module, mut b: Builder, like: &FunctionRef, results: &[Value]) {
+    let names: Vec<String> =
+        module.function(like.id).results.iter().map(|(name, _)| name.clone()).collect();
+    for (name, &value) in names.into_iter().zip(results) {
+        b.result(name, value);
+    }
+    b.finish(module);
+}
+
+/// The arguments with a footprint that is finite: one that is not is taken for the largest, whose
+/// filtered values are the far field's.
+pub(super) fn finite(b: &mut Builder, arguments: &Arguments) -> Vec<Value> {
+    let mut all = arguments.all();
+    let limit = b.f32(LARGEST_FOOTPRINT);
+    let zero = b.f32(0.0);
+    let mut regular = b.bool(true);
+    for &value in &all[4..8] {
+        let magnitude = b.abs(value);
+        let within = b.lt(magnitude, limit);
+        regular = b.and(regular, within);
+    }
+    for (i, far) in [(4, limit), (5, zero), (6, zero), (7, limit)] {
+        all[i] = b.select(regular, all[i], far);
+    }
+    for value in &mut all[2..4] {
+        let magnitude = b.abs(*value);
+        let within = b.lt(magnitude, limit);
+        *value = b.select(within, *value, zero);
+    }
+    all
+}
+
+/// `quad` where a source's footprint lies between 0.02 and 0.6 wavelengths and something that is
+/// not linear follows, else `local`: a branch between two functions.
+fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
+    let (local, nonlinear) = graph_function(compiler, module, Mode::Local, &format!("{name}_local"));
+    let band = nonlinear.then(|| {
+        footprint_function(compiler, module, &format!("{name}_bends"), |b, footprints| {
+            let (low, high) = (b.f32(0.02), b.f32(0.6));
+            let mut any = b.bool(false);
+            for &footprint in footprints {
+                let above = b.lt(low, footprint);
+                let below = b.lt(footprint, high);
+                let within = b.and(above, below);
+                any = b.or(any, within);
+            }
+            any
+        })
+    });
+    let Some(Some(band)) = band else {
+        return entry_over(compiler, module, name, |_| local);
+    };
+    let (quad, _) = graph_function(compiler, module, Mode::Quad, &format!("{name}_quad"));
+    let mut branches = Vec::new();
+    for (function, suffix) in [(&local, "by_local"), (&quad, "by_quad")] {
+        branches.push(branch(compiler, module, function, &format!("{name}_{suffix}")));
+    }
+    let mut b = Builder::new(name, "The texture over a footprint.");
+    let arguments = Arguments::declare(&mut b, compiler.graph);
+    let arguments = finite(&mut b, &arguments);
+    let bends = b.call(&band, &arguments)[0];
+    let (zero, one) = (b.u32(0), b.u32(1));
+    let none = b.f32(0.0);
+    let mut state = vec![none; local.results.len()];
+    for (branch, [yes, no]) in branches.iter().zip([[zero, one], [one, zero]]) {
+        let count = b.select(bends, yes, no);
+        state = b.fold(branch, count, &state, &arguments);
+    }
+    finish(module, b, &local, &state);
+}
+
+/// A function as the body of a fold of 0 or 1 turns: the state is replaced by its results.
+fn branch(compiler: &Compiler<'_>, module: &mut Module, function: &FunctionRef, name: &str) -> FunctionRef {
+    let mut b = Builder::new(name, "A branch: the state becomes the texture.");
+    b.param("index", Scalar::U32);
+    for i in 0..function.results.len() {
+        b.param_f32(format!("state_{i}"));
+    }
+    let arguments = Arguments::declare(&mut b, compiler.graph);
+    let results = b.call(function, &arguments.all());
+    for (i, &value) in results.iter().enumerate() {
+        b.result(format!("state_{i}"), value);
+    }
+    b.finish(module)
+}

@@ -1,0 +1,202 @@
+//! Fusion: a region that is not linear and depends on one signal alone is composed into one
+//! function of that signal and filtered once. Closing it node by node never converges (MATH §7:
+//! 0.16 against 0.038).
+//!
+//! A region is entered at the last signal that more than one thing shapes, or at a source. What a
+//! live parameter shapes cannot be baked and is closed node by node.
+
+use super::{Arguments, Bundle, Compiler, Lower, Options};
+use crate::cpu::{Evaluator, Input, Scratch};
+use crate::ir::{Builder, FunctionRef, Module};
+use crate::moments::{Algebra, Demand, Mode, Sampled, Signal, Tabulated};
+use mipless_graph::{Node, NodeId, Source};
+use std::rc::Rc;
+
+/// That a node is a function of one scalar signal alone.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    /// The node whose output the function takes.
+    entry: NodeId,
+    /// That output, which outlives its other readers.
+    signal: Rc<Signal>,
+    /// How many nodes between are not linear, at most.
+    bends: u32,
+    /// Whether no live parameter shapes it.
+    fixed: bool,
+}
+
+impl<'a> Compiler<'a> {
+    /// The same compilation with other options, and nothing built yet.
+    pub(super) fn with_options<'b>(&self, options: &'b Options) -> Compiler<'b>
+    where
+        'a: 'b,
+    {
+        Compiler {
+            graph: self.graph,
+            catalogue: self.catalogue,
+            options,
+            live: self.live.clone(),
+            functions: Default::default(),
+            fused: Default::default(),
+            inner: self.inner.clone(),
+        }
+    }
+}
+
+impl Lower<'_> {
+    /// Records what the node, just lowered, is a function of; its bundle by fusion, where that is
+    /// better than closing it alone.
+    pub(super) fn fuse(&mut self, index: usize, node: &Node) -> Option<Bundle> {
+        if !self.algebra.mode.spreads() {
+            return None;
+        }
+        let before = self.chain(node)?;
+        let bends = before.bends + u32::from(self.algebra.bent);
+        self.chains[index] = Some(Chain { bends, ..before.clone() });
+        let [low, high] = before.signal.range;
+        let bounded = low.is_finite() && high.is_finite() && low < high;
+        if !self.algebra.bent || before.bends == 0 || !before.fixed || !bounded {
+            return None;
+        }
+        Some(self.tabulated(index, node, before.entry, &before.signal))
+    }
+
+    /// The one signal that all varying inputs of a node are functions of.
+    fn chain(&self, node: &Node) -> Option<Chain> {
+        let mut chain: Option<Chain> = None;
+        let mut fixed = true;
+        for input in &node.inputs {
+            let id = match &input.source {
+                Source::Literal(_) => continue,
+                Source::Parameter(_) => {
+                    fixed = false;
+                    continue;
+                }
+                // Only where a coordinate is read: unused defaults are literals.
+                Source::Surface => return None,
+                Source::Node(id) => *id,
+            };
+            let this = match &self.chains[id.index()] {
+                Some(chain) => chain.clone(),
+                None => {
+                    let bundle = self.bundles[id.index()].as_ref()?;
+                    if bundle.iter().all(|signal| signal.is_certain(&self.algebra.b)) {
+                        // A number: constant nodes are fixed, others hang on parameters.
+                        fixed &= bundle.iter().all(|s| self.algebra.b.as_constant(s.mean).is_some());
+                        continue;
+                    }
+                    if bundle.len() != 1 {
+                        return None;
+                    }
+                    let signal = Rc::new(bundle[0].clone());
+                    Chain { entry: id, signal, bends: 0, fixed: true }
+                }
+            };
+            fixed &= this.fixed;
+            chain = Some(match chain {
+                None => this,
+                Some(other) if other.entry == this.entry => {
+                    Chain { bends: other.bends.max(this.bends), ..other }
+                }
+                Some(_) => return None,
+            });
+        }
+        chain.map(|chain| Chain { fixed, ..chain })
+    }
+
+    fn tabulated(&mut self, index: usize, node: &Node, entry: NodeId, signal: &Signal) -> Bundle {
+        let compiler = self.compiler;
+        let components = node.ty.components();
+        let known = compiler.fused.borrow().get(&index).cloned();
+        let sampled = known.unwrap_or_else(|| {
+            let sampled = Rc::new(sample(compiler, index, entry, signal.range, components));
+            compiler.fused.borrow_mut().insert(index, Rc::clone(&sampled));
+            sampled
+        });
+        let name = super::identifier(&node.name);
+        let function = self.function(&format!("fused {index}"), |module| {
+            function(compiler, module, index, entry)
+        });
+        let demand = Demand {
+            spread: compiler.inner[index] || compiler.options.moments,
+            skew: self.algebra.mode == Mode::Quad,
+        };
+        (0..components)
+            .map(|i| {
+                let component = if components > 1 { format!("{name}_{i}") } else { name.clone() };
+                let table = Tabulated::bake(
+                    self.module,
+                    &component,
+                    function.clone(),
+                    i,
+                    &sampled[i],
+                    demand,
+                );
+                self.algebra.transfer(signal, &table)
+            })
+            .collect()
+    }
+}
+
+/// The nodes from `entry` (exclusive) to `index`, inputs first.
+fn region(compiler: &Compiler<'_>, index: usize, entry: NodeId) -> Vec<usize> {
+    let mut region = vec![index];
+    let mut seen = rustc_hash::FxHashSet::from_iter([index, entry.index()]);
+    let mut next = 0;
+    while next < region.len() {
+        for input in &compiler.graph.nodes[region[next]].inputs {
+            if let Source::Node(id) = input.source
+                && seen.insert(id.index())
+            {
+                region.push(id.index());
+            }
+        }
+        next += 1;
+    }
+    region.sort_unstable();
+    region
+}
+
+/// The region as a function of the entry's value.
+fn function(compiler: &Compiler<'_>, module: &mut Module, index: usize, entry: NodeId) -> FunctionRef {
+    let graph = compiler.graph;
+    let name = super::identifier(&graph.nodes[index].name);
+    let mut b = Builder::new(format!("{name}_of"), "A function of one signal.");
+    let x = b.param_f32("x");
+    let argument = Signal::certain(&mut b, x);
+    let arguments = Arguments { footprint: [x; 8], parameters: Vec::new() };
+    let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
+    lower.bundles[entry.index()] = Some(vec![argument]);
+    for node in region(compiler, index, entry) {
+        let definition = &compiler.catalogue[graph.nodes[node].definition];
+        let bundle = (definition.lower)(&mut lower, &graph.nodes[node]);
+        lower.bundles[node] = Some(bundle);
+    }
+    let bundle = lower.bundles[index].take().expect("the region ends at the node");
+    let mut b = lower.algebra.b;
+    for (i, signal) in bundle.iter().enumerate() {
+        let value = signal.flat_mean(&mut b);
+        b.result(format!("value_{i}"), value);
+    }
+    b.finish(module)
+}
+
+/// The region's values over the range of the entry.
+fn sample(
+    compiler: &Compiler<'_>,
+    index: usize,
+    entry: NodeId,
+    range: [f32; 2],
+    components: usize,
+) -> Vec<Sampled> {
+    let mut module = Module::default();
+    let alone = compiler.with_options(compiler.options);
+    function(&alone, &mut module, index, entry);
+    let points = Sampled::points(range);
+    let mut values = Vec::new();
+    let evaluator = Evaluator::<f64>::new(&module);
+    let inputs = [Input::Floats(&points)];
+    evaluator.evaluate(&mut Scratch::new(), &inputs, points.len(), &mut values);
+    values.truncate(components);
+    values.into_iter().map(|values| Sampled::new(range, values)).collect()
+}

@@ -1,0 +1,256 @@
+//! Methods that evaluate the graph several times in a pixel: a fold over one function of it.
+
+use super::entry::{finish, finite, footprint_function, graph_function};
+use super::{Arguments, Compiler, Options, PixelFilter};
+use crate::ir::{Builder, Module, Type as Scalar, Value};
+use crate::moments::Mode;
+
+/// Mean (and variance) of points of the pixel filter: the R2 sequence (Roberts 2018) in integers,
+/// shifted by a hash of the pixel, warped to the filter. Means and squared deviations accumulate by
+/// Welford's recurrence.
+pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &str, samples: u32) {
+    let moments = compiler.options.moments;
+    // Variances of the point function are 0 and are not asked for.
+    let options = Options { moments: false, ..*compiler.options };
+    let plain = compiler.with_options(&options);
+    let (point, _) = graph_function(&plain, module, Mode::Point, &format!("{name}_point"));
+    let outputs = point.results.len();
+    let state_length = if moments { 2 * outputs } else { outputs };
+
+    let mut b = Builder::new(format!("{name}_sample"), "One more sample.");
+    let index = b.param("index", Scalar::U32);
+    let state: Vec<Value> = (0..state_length).map(|i| b.param_f32(format!("state_{i}"))).collect();
+    let (shift_x, shift_y) = (b.param("shift_x", Scalar::U32), b.param("shift_y", Scalar::U32));
+    let arguments = Arguments::declare(&mut b, compiler.graph);
+    let [x, y] = offset(&mut b, compiler.options.filter, index, [shift_x, shift_y]);
+    let mut all = arguments.all();
+    displace(&mut b, &mut all, [x, y]);
+    all[4..8].fill(b.f32(0.0));
+    let values = b.call(&point, &all);
+    let number = b.float_u(index);
+    let number = b.offset(number, 1.0);
+    let mut squares = Vec::new();
+    for (i, &value) in values.iter().enumerate() {
+        let deviation = b.sub(value, state[i]);
+        let part = b.div(deviation, number);
+        let mean = b.add(state[i], part);
+        b.result(format!("state_{i}"), mean);
+        if moments {
+            let after = b.sub(value, mean);
+            let square = b.mul(deviation, after);
+            squares.push(b.add(state[outputs + i], square));
+        }
+    }
+    for (i, sum) in squares.into_iter().enumerate() {
+        b.result(format!("state_{}", outputs + i), sum);
+    }
+    let sample = b.finish(module);
+
+    let mut b = Builder::new(name, "The texture over a footprint.");
+    let arguments = Arguments::declare(&mut b, compiler.graph);
+    let arguments = finite(&mut b, &arguments);
+    let [cell_x, cell_y] = [b.cast_u(arguments[0]), b.cast_u(arguments[1])];
+    let [u, v] = [b.bits(arguments[2]), b.bits(arguments[3])];
+    let mut hash = b.u32(compiler.options.seed ^ 0x9e37_79b9);
+    for word in [cell_x, cell_y, u, v] {
+        hash = b.xor_u(hash, word);
+        hash = scramble(&mut b, hash);
+    }
+    let other = b.u32(0x68bc_21eb);
+    let second = b.xor_u(hash, other);
+    let second = scramble(&mut b, second);
+    let zero = b.f32(0.0);
+    let count = b.u32(samples);
+    let mut captures = vec![hash, second];
+    captures.extend(&arguments);
+    let state = b.fold(&sample, count, &vec![zero; state_length], &captures);
+    let names: Vec<String> =
+        module.function(point.id).results.iter().map(|(name, _)| name.clone()).collect();
+    for (name, &value) in names.iter().zip(&state) {
+        b.result(name.clone(), value);
+    }
+    for (name, &sum) in names.iter().zip(&state[outputs.min(state.len())..]) {
+        let variance = b.scale(sum, 1.0 / (samples.max(2) - 1) as f32);
+        b.result(format!("{name}_variance"), variance);
+    }
+    b.finish(module);
+}
+
+/// Moves the position of a graph's arguments by (x, y) pixels. The offset's own integer part joins
+/// the cell, or the fraction would lose its detail.
+fn displace(b: &mut Builder, all: &mut [Value], pixels: [Value; 2]) {
+    for i in 0..2 {
+        let step = b.dot(&pixels, &[all[4 + i], all[6 + i]]);
+        let whole = b.floor(step);
+        let fraction = b.sub(step, whole);
+        let whole = b.trunc_i(whole);
+        all[i] = b.add_i(all[i], whole);
+        all[2 + i] = b.add(all[2 + i], fraction);
+    }
+}
+
+/// The finaliser of Murmur's family with Wellons's constants (lowbias32).
+fn scramble(b: &mut Builder, mut x: Value) -> Value {
+    for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b), (16, 1)] {
+        let by = b.u32(shift);
+        let shifted = b.shr_u(x, by);
+        x = b.xor_u(x, shifted);
+        let factor = b.u32(factor);
+        x = b.mul_u(x, factor);
+    }
+    x
+}
+
+/// The offset of a sample inside the pixel, in pixels.
+fn offset(b: &mut Builder, filter: PixelFilter, index: Value, shift: [Value; 2]) -> [Value; 2] {
+    // 2³² divided by the plastic number and by its square.
+    let uniform = [0xc13f_a9a9u32, 0x91e1_0da5].map(|step| b.u32(step));
+    let mut unit = [0, 1].map(|i| {
+        let walked = b.mul_u(index, uniform[i]);
+        let place = b.add_u(walked, shift[i]);
+        let by = b.u32(8);
+        let leading = b.shr_u(place, by);
+        let number = b.float_u(leading);
+        let number = b.scale(number, 1.0 / (1u32 << 24) as f32);
+        b.offset(number, 0.5 / (1u32 << 24) as f32)
+    });
+    match filter {
+        PixelFilter::Box => unit.map(|u| b.offset(u, -0.5)),
+        PixelFilter::Gaussian(sd) => {
+            // Box–Muller: low discrepancy survives, since radius and angle are monotone in u.
+            let log = b.ln(unit[0]);
+            let square = b.scale(log, -2.0 * sd * sd);
+            let radius = b.sqrt(square);
+            unit[1] = b.offset(unit[1], -0.5);
+            let angle = b.scale(unit[1], std::f32::consts::TAU);
+            let (sine, cosine) = (b.sin(angle), b.cos(angle));
+            [b.mul(radius, cosine), b.mul(radius, sine)]
+        }
+    }
+}
+
+/// The nodes (x, y) and weights of a split rule, for a unit Gaussian, with the largest share of the
+/// footprint r₀ and the scatter c in wavelengths (MATH §4).
+fn rule(k: u32) -> (Vec<[f32; 3]>, f32, f32) {
+    match k {
+        4 => {
+            let nodes = [[1.0, 1.0], [-1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
+            (nodes.map(|[x, y]| [x, y, 0.25]).to_vec(), 0.5, 0.18)
+        }
+        7 => {
+            let mut nodes = vec![[0.0, 0.0, 0.5]];
+            for i in 0..6 {
+                let angle = std::f32::consts::FRAC_PI_3 * i as f32;
+                nodes.push([2.0 * angle.cos(), 2.0 * angle.sin(), 1.0 / 12.0]);
+            }
+            (nodes, 0.7, 0.25)
+        }
+        _ => {
+            let root = 6.0f32.sqrt();
+            let one = [
+                (-(3.0 + root).sqrt(), 1.0 / (4.0 * (3.0 + root))),
+                (-(3.0 - root).sqrt(), 1.0 / (4.0 * (3.0 - root))),
+                ((3.0 - root).sqrt(), 1.0 / (4.0 * (3.0 - root))),
+                ((3.0 + root).sqrt(), 1.0 / (4.0 * (3.0 + root))),
+            ];
+            let mut nodes = Vec::new();
+            for (x, w) in one {
+                nodes.extend(one.map(|(y, v)| [x, y, w * v]));
+            }
+            (nodes, 0.8, 0.32)
+        }
+    }
+}
+
+/// Real sub-footprints, each by `quad`: node x at √r x of the footprint, of which each keeps the
+/// share 1 − r. r = min(r₀, (c/s)²) with s the largest footprint of a source tends to one
+/// evaluation at large footprints.
+pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k: u32) {
+    let (nodes, largest, scatter) = rule(k);
+    let s = compiler.options.filter.sd();
+    let (quad, _) = graph_function(compiler, module, Mode::Quad, &format!("{name}_quad"));
+    let size = footprint_function(compiler, module, &format!("{name}_size"), |b, footprints| {
+        let mut most = footprints[0];
+        for &footprint in &footprints[1..] {
+            most = b.max(most, footprint);
+        }
+        most
+    });
+    let moments = compiler.options.moments;
+    let outputs = if moments { quad.results.len() / 2 } else { quad.results.len() };
+    // Of each node: x, y, the weight, and the weight's share of all weights so far.
+    let mut total = 0.0;
+    let mut rows = Vec::new();
+    for [x, y, weight] in &nodes {
+        total += weight;
+        rows.extend([*x, *y, *weight, weight / total]);
+    }
+    let table = module.table(format!("{name}_nodes"), rows);
+
+    // The state: running weighted means, then the weighted sums of squared deviations and of
+    // variances (West 1979): no difference of second moments.
+    let mut b = Builder::new(format!("{name}_part"), "One more part of the footprint.");
+    let index = b.param("index", Scalar::U32);
+    let length = if moments { 2 * outputs } else { outputs };
+    let state: Vec<Value> = (0..length).map(|i| b.param_f32(format!("state_{i}"))).collect();
+    let (far, near) = (b.param_f32("root_share"), b.param_f32("root_rest"));
+    let arguments = Arguments::declare(&mut b, compiler.graph);
+    let four = b.u32(4);
+    let first = b.mul_u(index, four);
+    let node: [Value; 4] = [0u32, 1, 2, 3].map(|i| {
+        let i = b.u32(i);
+        let at = b.add_u(first, i);
+        b.load(table, at)
+    });
+    let shift = b.scale(far, s);
+    let (x, y) = (b.mul(node[0], shift), b.mul(node[1], shift));
+    let mut all = arguments.all();
+    displace(&mut b, &mut all, [x, y]);
+    for value in &mut all[4..8] {
+        *value = b.mul(*value, near);
+    }
+    let values = b.call(&quad, &all);
+    let mut spreads = Vec::new();
+    for i in 0..outputs {
+        let deviation = b.sub(values[i], state[i]);
+        let step = b.mul(node[3], deviation);
+        let mean = b.add(state[i], step);
+        b.result(format!("state_{i}"), mean);
+        if moments {
+            let after = b.sub(values[i], mean);
+            let square = b.mul(deviation, after);
+            let spread = b.add(square, values[outputs + i]);
+            let part = b.mul(node[2], spread);
+            spreads.push(b.add(state[outputs + i], part));
+        }
+    }
+    for (i, spread) in spreads.into_iter().enumerate() {
+        b.result(format!("state_{}", outputs + i), spread);
+    }
+    let part = b.finish(module);
+
+    let mut b = Builder::new(name, "The texture over a footprint.");
+    let arguments = Arguments::declare(&mut b, compiler.graph);
+    let arguments = finite(&mut b, &arguments);
+    let share = match &size {
+        None => b.f32(largest),
+        Some(size) => {
+            let size = b.call(size, &arguments)[0];
+            let size = b.offset(size, 1e-6);
+            let scatter = b.f32(scatter);
+            let ratio = b.div(scatter, size);
+            let square = b.square(ratio);
+            let most = b.f32(largest);
+            b.min(square, most)
+        }
+    };
+    let one = b.f32(1.0);
+    let rest = b.sub(one, share);
+    let (far, near) = (b.sqrt(share), b.sqrt(rest));
+    let zero = b.f32(0.0);
+    let count = b.u32(nodes.len() as u32);
+    let mut captures = vec![far, near];
+    captures.extend(&arguments);
+    let state = b.fold(&part, count, &vec![zero; length], &captures);
+    finish(module, b, &quad, &state);
+}

@@ -1,0 +1,94 @@
+//! Who reads what, and who carries which symbol.
+
+use super::Bundle;
+use crate::ir::Builder;
+use crate::moments::Symbol;
+use mipless_graph::{Graph, Source};
+use rustc_hash::FxHashMap;
+
+/// A signal carries at most this many symbols; the oldest go private first, so that a graph of
+/// 10,000 nodes stays linear.
+const MOST: usize = 8;
+
+/// How many live edges (and outputs) read each node; 0 for a node that no output needs.
+pub(super) fn live(graph: &Graph) -> Vec<u32> {
+    let mut uses = vec![0u32; graph.nodes.len()];
+    for output in &graph.outputs {
+        uses[output.node.index()] += 1;
+    }
+    for (index, node) in graph.nodes.iter().enumerate().rev() {
+        if uses[index] > 0 {
+            for input in &node.inputs {
+                if let Source::Node(id) = input.source {
+                    uses[id.index()] += 1;
+                }
+            }
+        }
+    }
+    uses
+}
+
+/// Whether a live node reads each node's output, and not outputs alone.
+pub(super) fn inner(graph: &Graph, live: &[u32]) -> Vec<bool> {
+    let mut inner = vec![false; graph.nodes.len()];
+    for (node, _) in graph.nodes.iter().zip(live).filter(|&(_, &uses)| uses > 0) {
+        for input in &node.inputs {
+            if let Source::Node(id) = input.source {
+                inner[id.index()] = true;
+            }
+        }
+    }
+    inner
+}
+
+/// How many live nodes carry each symbol. A symbol is its own only while several do: from the fork
+/// where it was born to where its paths have met.
+#[derive(Debug, Default)]
+pub(super) struct Carriers {
+    counts: FxHashMap<Symbol, u32>,
+}
+
+fn symbols(bundle: &Bundle) -> Vec<Symbol> {
+    let mut all: Vec<Symbol> =
+        bundle.iter().flat_map(|signal| signal.shared.iter().map(|&(s, _)| s)).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+impl Carriers {
+    pub(super) fn born(&mut self, bundle: &Bundle) {
+        for symbol in symbols(bundle) {
+            *self.counts.entry(symbol).or_default() += 1;
+        }
+    }
+
+    pub(super) fn died(&mut self, bundle: &Bundle) {
+        for symbol in symbols(bundle) {
+            if let Some(count) = self.counts.get_mut(&symbol) {
+                *count -= 1;
+            }
+        }
+    }
+
+    /// Folds into private variance what only this bundle carries (and only one signal of it), but
+    /// for the symbols from `kept` on, and whatever exceeds the limit.
+    pub(super) fn retire(&mut self, b: &mut Builder, bundle: &mut Bundle, kept: Symbol) {
+        for symbol in symbols(bundle) {
+            let only = self.counts.get(&symbol) == Some(&1);
+            let holders = bundle.iter().filter(|s| s.coefficient(symbol).is_some()).count();
+            if only && holders == 1 && symbol < kept {
+                for signal in bundle.iter_mut() {
+                    signal.retire(b, symbol);
+                }
+                self.counts.remove(&symbol);
+            }
+        }
+        for signal in bundle.iter_mut() {
+            while signal.shared.len() > MOST {
+                let oldest = signal.shared[0].0;
+                signal.retire(b, oldest);
+            }
+        }
+    }
+}

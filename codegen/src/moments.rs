@@ -1,0 +1,124 @@
+//! The moment algebra: what a signal is, and how operations act on it.
+//!
+//! Over the footprint of a pixel the position is uv₀ + A·δ with δ ~ N(0, I₂). A [`Signal`] is
+//!
+//! ```text
+//! X = mean + g·δ + ½(δᵀHδ − tr H) + Σ c_k ε_k + √private · ε
+//! ```
+//!
+//! with unit, uncorrelated ε. Covariance is the dot product of coefficients (½ H:H for the second
+//! order), so it is symmetric and positive semi-definite by construction. The rules are those of
+//! Bruneton & Neyret 2012 §2.2 (linear), Isserlis (products), Stein and Bussgang (transfers) and
+//! Clark 1961 (maxima), each in a form that survives f32.
+//!
+//! # What every rule keeps
+//! - A footprint of 0 gives the value of the point function; a rule never divides by a spread.
+//! - Second-order coefficients are carried only by [`Mode::Quad`]; elsewhere they are the constant
+//!   0 and vanish when the function is built.
+//! - What no result reads does not exist: a moment that is not demanded is dead code.
+
+mod extremum;
+mod normal;
+mod piecewise;
+mod position;
+mod product;
+mod signal;
+mod smooth;
+mod tabulated;
+mod transfer;
+mod wave;
+
+use crate::ir::{Builder, Value};
+
+pub use normal::Normal;
+pub use piecewise::{Knot, Piecewise, Shape};
+pub use signal::{Covariance, Signal, Symbol};
+pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
+pub(crate) use tabulated::{Demand, Sampled, Tabulated};
+pub use transfer::{Gaussian, Moments, Transfer};
+pub use wave::SquareWave;
+
+/// Which moments signals carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Mode {
+    /// None: the unfiltered value.
+    Point,
+    /// The sources' filtered means; what follows takes them for values.
+    Naive,
+    /// One variance per source and footprint (Heitz et al. 2013; Deliot & Heitz 2019).
+    Ensemble,
+    /// Mean, gradient and remainder.
+    Local,
+    /// The same with the Hessian and the third cumulant.
+    Quad,
+}
+
+impl Mode {
+    /// Whether sources are filtered.
+    pub const fn filters(self) -> bool {
+        !matches!(self, Self::Point)
+    }
+
+    /// Whether signals carry a spread.
+    pub const fn spreads(self) -> bool {
+        !matches!(self, Self::Point | Self::Naive)
+    }
+}
+
+/// The algebra at work in one function: where operations put their instructions and fresh symbols.
+#[derive(Debug)]
+pub struct Algebra {
+    /// The function under construction.
+    pub b: Builder,
+    /// Which moments are carried.
+    pub mode: Mode,
+    /// Whether the signal under construction is read by several consumers, so that its fresh parts
+    /// are symbols of their own.
+    pub shares: bool,
+    /// Whether an operation since this was last cleared was not linear in a signal with a spread.
+    pub bent: bool,
+    symbols: u32,
+}
+
+impl Algebra {
+    /// An algebra that builds into `b`.
+    pub fn new(b: Builder, mode: Mode) -> Self {
+        Self { b, mode, shares: false, bent: false, symbols: 0 }
+    }
+
+    /// The symbol that [`Self::fresh_symbol`] gives next.
+    pub fn next_symbol(&self) -> Symbol {
+        Symbol(self.symbols)
+    }
+
+    /// A symbol that no signal has yet.
+    pub fn fresh_symbol(&mut self) -> Symbol {
+        self.symbols += 1;
+        Symbol(self.symbols - 1)
+    }
+
+    /// Adds a fresh ε of this variance (at least 0): a symbol where the signal is shared, else a
+    /// part of its private variance.
+    pub fn attach_fresh(&mut self, signal: &mut Signal, variance: Value) {
+        if self.b.is_zero(variance) {
+            return;
+        }
+        if self.shares {
+            let symbol = self.fresh_symbol();
+            let coefficient = self.b.sqrt(variance);
+            signal.push_shared(symbol, coefficient);
+        } else {
+            signal.private = self.b.add(signal.private, variance);
+        }
+    }
+
+    /// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be
+    /// seen.
+    pub fn spread(&mut self, variance: Value) -> (Value, Value) {
+        let b = &mut self.b;
+        let raised = b.offset(variance, 1e-12);
+        let sd = b.sqrt(raised);
+        let one = b.f32(1.0);
+        (sd, b.div(one, sd))
+    }
+}

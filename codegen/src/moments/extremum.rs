@@ -1,0 +1,44 @@
+//! Maxima and minima of two signals (Clark 1961).
+
+use super::{Algebra, Normal, Signal};
+
+impl Algebra {
+    /// max(X, Y): with a = (m_X − m_Y)/θ, θ² = Var(X − Y): mean m_Y + θ(aΦ(a) + φ(a)),
+    /// coefficients Φ(a)x + Φ(−a)y, distortion θ² d(a). Exact in mean and variance for Gaussians.
+    pub fn maximum(&mut self, x: &Signal, y: &Signal) -> Signal {
+        let b = &mut self.b;
+        let range = [x.range[0].max(y.range[0]), x.range[1].max(y.range[1])];
+        let (x, y) = (&x.flat(b), &y.flat(b));
+        let difference = x.sub(b, y);
+        if !self.mode.spreads() || difference.is_certain(b) {
+            let mean = b.max(x.mean, y.mean);
+            return if x.is_certain(b) || !self.mode.spreads() {
+                Signal::certain(b, mean).with_range(range)
+            } else {
+                // Equal spreads: whichever mean is larger carries all of it.
+                Signal { mean, range, hermite: None, ..x.clone() }
+            };
+        }
+        self.bent = true;
+        let variance = difference.variance(b);
+        let (sd, inverse) = self.spread(variance);
+        let b = &mut self.b;
+        let normal = Normal::at(b, difference.mean, inverse);
+        let hinge = normal.hinge(b, difference.mean, sd);
+        let (of_x, of_y) = (x.scale(b, normal.below), y.scale(b, normal.above));
+        let mut out = of_x.add(b, &of_y);
+        out.mean = b.add(y.mean, hinge);
+        out.range = range;
+        let distortion = normal.hinge_distortion(b);
+        let distortion = b.mul(variance, distortion);
+        self.attach_fresh(&mut out, distortion);
+        out
+    }
+
+    /// min(X, Y) = −max(−X, −Y).
+    pub fn minimum(&mut self, x: &Signal, y: &Signal) -> Signal {
+        let (x, y) = (x.negate(&mut self.b), y.negate(&mut self.b));
+        let out = self.maximum(&x, &y);
+        out.negate(&mut self.b)
+    }
+}

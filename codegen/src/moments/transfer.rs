@@ -1,0 +1,121 @@
+//! Functions of one signal: Stein's slope, Bussgang's distortion, and the third cumulant.
+
+use super::{Algebra, Mode, Signal};
+use crate::ir::{Builder, Value};
+
+/// The Gaussian that a transfer is averaged over.
+#[derive(Clone, Copy, Debug)]
+pub struct Gaussian {
+    /// The mean m.
+    pub mean: Value,
+    /// The variance v.
+    pub variance: Value,
+    /// σ, at least 1e-6.
+    pub sd: Value,
+    /// 1/σ.
+    pub inverse_sd: Value,
+    /// The range of the input, as far as is known.
+    pub range: [f32; 2],
+}
+
+/// The moments of T(X) for a Gaussian X.
+#[derive(Clone, Copy, Debug)]
+pub struct Moments {
+    /// E[T].
+    pub mean: Value,
+    /// E[T′] = ∂E[T]/∂m (Stein).
+    pub slope: Value,
+    /// E[T″] = ∂²E[T]/∂m².
+    pub curvature: Value,
+    /// E[T‴] = ∂³E[T]/∂m³.
+    pub third: Value,
+    /// Var T − E[T′]² v, never negative (Bussgang).
+    pub distortion: Value,
+}
+
+/// A function of one number, with its moments over a Gaussian.
+pub trait Transfer {
+    /// T(x).
+    fn value(&self, b: &mut Builder, x: Value) -> Value;
+    /// The moments over a Gaussian.
+    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments;
+    /// The period, where the function has one: positions then give their fraction alone.
+    fn period(&self) -> Option<f32> {
+        None
+    }
+    /// The least and largest value on `[low, high]` (which may be infinite).
+    fn range(&self, b: &Builder, input: [f32; 2]) -> [f32; 2];
+}
+
+impl Algebra {
+    /// T(X): mean E[T] + (κ₃/6) E[T‴] inside T's range, coefficients E[T′]·x, second order
+    /// E[T′] H + E[T″] g gᵀ, and the distortion into a fresh ε (RULES: transfers, H and the third
+    /// cumulant). Where several transfers read X, the second Hermite part of the distortion is
+    /// shared among them.
+    pub fn transfer(&mut self, x: &Signal, t: &dyn Transfer) -> Signal {
+        let b = &mut self.b;
+        let range = t.range(b, x.range);
+        // Whole periods do not matter, and a fraction keeps its detail far from the origin.
+        let fraction = Signal { cell: None, ..x.clone() };
+        let x = if t.period() == Some(1.0) { &fraction } else { x };
+        if !self.mode.spreads() || x.is_certain(b) {
+            let mean = x.flat_mean(b);
+            let value = t.value(b, mean);
+            return Signal::certain(b, value).with_range(range);
+        }
+        let x = &x.flat(b);
+        let linear = x.linear_variance(b);
+        let other = x.other_variance(b);
+        let variance = b.add(linear, other);
+        let (sd, inverse_sd) = self.spread(variance);
+        let b = &mut self.b;
+        let gaussian = Gaussian { mean: x.mean, variance, sd, inverse_sd, range: x.range };
+        let m = t.moments(b, &gaussian);
+        self.bent |= !b.is_zero(m.distortion);
+        let mut out = x.scale(b, m.slope);
+        out.range = range;
+        out.mean = m.mean;
+        let kappa = x.third_cumulant(b, sd);
+        if !b.is_zero(kappa) {
+            let sixth = b.scale(kappa, 1.0 / 6.0);
+            let correction = b.mul(sixth, m.third);
+            out.mean = b.add(m.mean, correction);
+            if range[0].is_finite() && range[1].is_finite() {
+                out.mean = b.clamp(out.mean, range[0], range[1]);
+            }
+        }
+        let mut distortion = m.distortion;
+        if self.mode == Mode::Quad {
+            let [g1, g2] = x.g;
+            let outer = [b.square(g1), b.mul(g1, g2), b.square(g2)];
+            for (h, o) in out.h.iter_mut().zip(outer) {
+                let bent = b.mul(m.curvature, o);
+                *h = b.add(*h, bent);
+            }
+        }
+        // The second Hermite coefficient squared: v² E[T″]²/2, of which the second order carries
+        // |g|⁴ E[T″]²/2.
+        let bend = b.square(m.curvature);
+        let bend = b.scale(bend, 0.5);
+        let whole = b.square(variance);
+        let carried = if self.mode == Mode::Quad { b.square(linear) } else { b.f32(0.0) };
+        let zero = b.f32(0.0);
+        if let Some(symbol) = x.hermite {
+            let left = b.sub(whole, carried);
+            let left = b.max(left, zero);
+            let left = b.sqrt(left);
+            let coefficient = b.mul(m.curvature, left);
+            let coefficient = b.scale(coefficient, std::f32::consts::FRAC_1_SQRT_2);
+            out.push_shared(symbol, coefficient);
+            let second = b.mul(bend, whole);
+            distortion = b.sub(distortion, second);
+            distortion = b.max(distortion, zero);
+        } else if self.mode == Mode::Quad {
+            let second = b.mul(bend, carried);
+            distortion = b.sub(distortion, second);
+            distortion = b.max(distortion, zero);
+        }
+        self.attach_fresh(&mut out, distortion);
+        out
+    }
+}

@@ -1,0 +1,363 @@
+//! WGSL text of a [`Program`]: readable, deterministic to the byte, accepted by naga.
+//!
+//! # The shader
+//! A texture named `marble` becomes
+//! ```wgsl
+//! struct Footprint { cell: vec2i, uv: vec2f, du: vec2f, dv: vec2f }
+//! struct MarbleParameters { scale: f32, … }
+//! struct MarbleOutputs { base_color: vec3f, … }
+//! fn marble(footprint: Footprint, parameters: MarbleParameters) -> MarbleOutputs
+//! ```
+//! - Without parameters there is no `MarbleParameters` and no second argument.
+//! - With [`Interface::moments`](crate::ir::Interface::moments), `base_color_variance` and so on
+//!   follow all means. A boolean parameter is a `u32`, not 0 for true.
+//! - No derivative built-ins and no globals; one binding, [`TABLES_BINDING`], if there are tables.
+//! - Every other name begins with the texture's; none is a reserved word of WGSL, GLSL, HLSL or MSL.
+//! - No function has more than about 200 statements: long ones call their parts.
+//!
+//! # The compute entry point
+//! `marble_compute` evaluates an array of footprints, with workgroups of [`WORKGROUP_SIZE`]:
+//! | binding of group 0 | holds |
+//! |---|---|
+//! | 0 storage, read | `array<Footprint>`: 32 bytes each: `cell` 2 × i32, `uv`, `du`, `dv` 2 × f32 each |
+//! | 1 uniform | the struct of parameters, laid out as [`Shader::parameters`] says and packed by [`Shader::pack_parameters`]; absent without parameters |
+//! | 2 storage, read and write | `array<f32>`: for each footprint all scalars of all outputs in order, without padding; integers and truth values (0, 1) as f32 |
+//! | 3 storage, read | the tables, [`Tables::data`]; absent without tables |
+//!
+//! Pixel `index` is invocation `(index % 65536, index / 65536)`, so dispatch [`workgroups`]. What is
+//! not below the length of binding 0 does nothing.
+//!
+//! # The fragment entry point
+//! `marble_fragment` takes `uv` at location 0 and returns one `vec4f` per output, at locations 0, 1,
+//! …: a single number as grey, alpha 1 where there is none. `du` and `dv` are its screen-space
+//! derivatives; parameters and tables are bound as above.
+
+mod entry;
+mod expression;
+mod function;
+mod name;
+mod part;
+mod reserved;
+mod statement;
+
+pub use name::identifier;
+
+use crate::ir::{FunctionId, Inst, Program, Type};
+use entry::{Names, entry_text, face, push_entry_point, push_structs};
+use function::{Context, Signature, is_packed};
+use name::{Scope, camel};
+use serde::Serialize;
+
+/// The binding of the footprints, in group 0.
+pub const FOOTPRINTS_BINDING: u32 = 0;
+/// The binding of the parameters, in group 0.
+pub const PARAMETERS_BINDING: u32 = 1;
+/// The binding of the outputs, in group 0.
+pub const OUTPUTS_BINDING: u32 = 2;
+/// The binding of the tables, in group 0.
+pub const TABLES_BINDING: u32 = 3;
+/// Invocations in a workgroup of the compute entry point.
+pub const WORKGROUP_SIZE: u32 = 64;
+/// Invocations in a row of a dispatch of the compute entry point.
+pub const PIXELS_PER_ROW: u32 = 1 << 16;
+
+/// How many workgroups the compute entry point needs for so many pixels, in x, y and z.
+pub const fn workgroups(pixels: u32) -> [u32; 3] {
+    if pixels <= PIXELS_PER_ROW {
+        [pixels.div_ceil(WORKGROUP_SIZE), 1, 1]
+    } else {
+        [
+            PIXELS_PER_ROW / WORKGROUP_SIZE,
+            pixels.div_ceil(PIXELS_PER_ROW),
+            1,
+        ]
+    }
+}
+
+/// Which entry point goes with the function.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Entry {
+    /// None: the function alone, to be called from other shaders.
+    #[default]
+    None,
+    /// A fragment shader.
+    Fragment,
+    /// A compute shader over an array of footprints.
+    Compute,
+}
+
+/// How to emit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// The entry point.
+    pub entry: Entry,
+}
+
+/// The stage of an entry point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// A fragment shader.
+    Fragment,
+    /// A compute shader.
+    Compute,
+}
+
+/// An entry point.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct EntryPoint {
+    /// The function's name.
+    pub name: String,
+    /// Its stage.
+    pub stage: Stage,
+}
+
+/// What a binding holds: see the module's documentation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BindingKind {
+    /// The footprints of the pixels.
+    Footprints,
+    /// The parameters.
+    Parameters,
+    /// The outputs of the pixels.
+    Outputs,
+    /// The tables.
+    Tables,
+}
+
+/// A buffer that the shader reads or writes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Binding {
+    /// The group.
+    pub group: u32,
+    /// The binding in its group.
+    pub binding: u32,
+    /// The variable's name.
+    pub name: String,
+    /// What it holds.
+    pub kind: BindingKind,
+}
+
+/// A member of the struct of parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterField {
+    /// The input's name in the graph.
+    pub name: String,
+    /// The member's name.
+    pub field: String,
+    /// The type in the graph.
+    pub ty: mipless_graph::Type,
+    /// The type of each component in the struct; `U32` for booleans.
+    pub scalar: Type,
+    /// The first byte in the uniform struct.
+    pub offset: u32,
+    /// The default, one number a component.
+    pub default: Vec<f32>,
+}
+
+/// A member of the struct of outputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputField {
+    /// The output's name in the graph.
+    pub name: String,
+    /// The member's name.
+    pub field: String,
+    /// The type in the graph.
+    pub ty: mipless_graph::Type,
+    /// The type of each component.
+    pub scalar: Type,
+    /// Whether it is the variance of that output, not its mean.
+    pub variance: bool,
+    /// The position of the first component among all scalars of a pixel.
+    pub first: u32,
+}
+
+/// All tables of a shader, one after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tables {
+    /// The numbers.
+    pub data: Vec<f32>,
+    /// Each table's name, first number and length.
+    pub entries: Vec<(String, u32, u32)>,
+}
+
+/// WGSL text and what a host needs to know of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shader {
+    /// The text.
+    pub source: String,
+    /// The texture's function.
+    pub function: String,
+    /// The entry point, if one was asked for.
+    pub entry_point: Option<EntryPoint>,
+    /// Every binding, in order.
+    pub bindings: Vec<Binding>,
+    /// The members of the struct of parameters, in order.
+    pub parameters: Vec<ParameterField>,
+    /// The size of that struct in bytes, a multiple of 16; 0 without parameters.
+    pub parameters_size: u32,
+    /// The members of the struct of outputs, in order.
+    pub outputs: Vec<OutputField>,
+    /// The contents of the binding of tables, if there are any.
+    pub tables: Option<Tables>,
+}
+
+impl Shader {
+    /// How many numbers the compute entry point writes for each pixel.
+    pub fn scalars_per_pixel(&self) -> usize {
+        self.outputs.iter().map(|o| o.ty.components()).sum()
+    }
+
+    /// The bytes of the parameters' buffer for these numbers, one a component in the parameters'
+    /// order; integers and truth values are converted.
+    ///
+    /// # Panics
+    /// If there are not as many numbers as components.
+    pub fn pack_parameters(&self, numbers: &[f32]) -> Vec<u8> {
+        let components: usize = self.parameters.iter().map(|p| p.ty.components()).sum();
+        assert_eq!(numbers.len(), components, "numbers for the parameters");
+        let mut bytes = vec![0; self.parameters_size as usize];
+        let mut numbers = numbers.iter();
+        for field in &self.parameters {
+            for (component, &number) in numbers.by_ref().take(field.ty.components()).enumerate() {
+                let word = match field.scalar {
+                    Type::F32 => number.to_le_bytes(),
+                    Type::I32 => (number as i32).to_le_bytes(),
+                    Type::U32 | Type::Bool => (number as u32).to_le_bytes(),
+                };
+                let at = field.offset as usize + 4 * component;
+                bytes[at..at + 4].copy_from_slice(&word);
+            }
+        }
+        bytes
+    }
+}
+
+/// Emits a program.
+///
+/// # Panics
+/// If the program breaks an invariant of the IR, or its interface does not fit its entry: see
+/// [`verify`](crate::ir::verify).
+pub fn emit(program: &Program, options: &Options) -> Shader {
+    let module = &program.module;
+    let prefix = identifier(&program.interface.name);
+    let stem = prefix.strip_suffix("_value").unwrap_or(&prefix);
+    let mut globals = Scope::default();
+    globals.take("Footprint".to_owned());
+    let names = Names {
+        function: globals.take(prefix.clone()),
+        parameters: globals.take(format!("{}Parameters", camel(stem))),
+        outputs: globals.take(format!("{}Outputs", camel(stem))),
+        tables: globals.take(format!("{stem}_tables")),
+    };
+    let face = face(program);
+
+    let mut reached = vec![false; module.functions.len()];
+    reached[module.functions.len() - 1] = true;
+    let mut instructions = 0;
+    for index in (0..module.functions.len()).rev() {
+        if reached[index] {
+            instructions += module.functions[index].insts.len();
+            for inst in &module.functions[index].insts {
+                if let Inst::Call(callee, _)
+                | Inst::Fold {
+                    function: callee, ..
+                } = inst
+                {
+                    reached[callee.index()] = true;
+                }
+            }
+        }
+    }
+    let last = module.functions.len() - 1;
+    let signatures = (module.functions.iter().enumerate())
+        .map(|(index, function)| {
+            if index == last {
+                return Some(Signature {
+                    name: names.function.clone(),
+                    packed: None,
+                    results: None,
+                    fields: Vec::new(),
+                });
+            }
+            reached[index].then(|| {
+                let name = globals.take(identifier(&format!("{stem}_{}", function.name)));
+                let camel = camel(&name);
+                let mut fields = Scope::default();
+                Signature {
+                    packed: is_packed(function.params.len())
+                        .then(|| globals.take(format!("{camel}Args"))),
+                    results: (function.results.len() > 1).then(|| globals.take(camel)),
+                    fields: (function.results.iter())
+                        .map(|(field, _)| fields.take(identifier(field)))
+                        .collect(),
+                    name,
+                }
+            })
+        })
+        .collect();
+
+    let tables = (!module.tables.is_empty()).then(|| {
+        let mut tables = Tables {
+            data: Vec::new(),
+            entries: Vec::new(),
+        };
+        for table in &module.tables {
+            let first = tables.data.len() as u32;
+            tables
+                .entries
+                .push((table.name.clone(), first, table.data.len() as u32));
+            tables.data.extend_from_slice(&table.data);
+        }
+        tables
+    });
+    let mut context = Context {
+        module,
+        signatures,
+        globals,
+        tables: names.tables.clone(),
+        table_offsets: tables
+            .iter()
+            .flat_map(|t| t.entries.iter().map(|e| e.1))
+            .collect(),
+        out: String::with_capacity(1024 + 40 * instructions),
+    };
+    push_structs(&mut context.out, &names, &face, tables.is_some());
+    for index in (0..last).filter(|&index| reached[index]) {
+        function::write(&mut context, FunctionId::from_index(index), None);
+    }
+    let text = entry_text(program, &names, &face);
+    function::write(&mut context, FunctionId::from_index(last), Some(&text));
+
+    let Context {
+        mut globals,
+        out: mut source,
+        ..
+    } = context;
+    let (entry_point, mut bindings) =
+        push_entry_point(&mut source, &mut globals, options.entry, &names, &face);
+    source.truncate(source.trim_end().len());
+    source.push('\n');
+    if tables.is_some() {
+        bindings.push(Binding {
+            group: 0,
+            binding: TABLES_BINDING,
+            name: names.tables,
+            kind: BindingKind::Tables,
+        });
+    }
+    Shader {
+        source,
+        function: names.function,
+        entry_point,
+        bindings,
+        parameters: face.parameters,
+        parameters_size: face.parameters_size,
+        outputs: face.outputs,
+        tables,
+    }
+}
+
+#[cfg(test)]
+mod tests;

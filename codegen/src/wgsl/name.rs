@@ -1,0 +1,116 @@
+//! Names: identifiers that every target accepts, from arbitrary text, unique in their scope.
+
+use super::reserved::is_reserved;
+use rustc_hash::FxHashMap;
+
+/// An identifier made of arbitrary text: ASCII letters, digits and single underscores between them,
+/// not beginning with a digit, and not a reserved word of any target.
+pub fn identifier(text: &str) -> String {
+    let mut name = String::with_capacity(text.len() + 1);
+    let mut gap = false;
+    for c in text.chars() {
+        if c.is_ascii_alphanumeric() {
+            if gap && !name.is_empty() {
+                name.push('_');
+            }
+            if name.is_empty() && c.is_ascii_digit() {
+                name.push('n');
+            }
+            gap = false;
+            name.push(c);
+        } else {
+            gap = true;
+        }
+    }
+    if name.is_empty() {
+        name.push('x');
+    }
+    if is_reserved(&name) {
+        name.push_str("_value");
+    }
+    name
+}
+
+/// The name of a type: the words of an identifier, capitalised and joined.
+pub(super) fn camel(identifier: &str) -> String {
+    let mut name = String::with_capacity(identifier.len());
+    for word in identifier.split('_') {
+        let mut rest = word.chars();
+        name.extend(rest.next().map(|c| c.to_ascii_uppercase()));
+        name.push_str(rest.as_str());
+    }
+    name
+}
+
+/// The names taken in a scope.
+#[derive(Debug, Default, Clone)]
+pub(super) struct Scope {
+    /// For each name, the number that its next namesake gets.
+    taken: FxHashMap<String, u32>,
+}
+
+impl Scope {
+    /// Takes `name`, or the first free of `name_2`, `name_3`, ….
+    pub(super) fn take(&mut self, name: String) -> String {
+        let Some(next) = self.taken.get_mut(&name) else {
+            self.taken.insert(name.clone(), 2);
+            return name;
+        };
+        let mut number = *next;
+        loop {
+            let candidate = format!("{name}_{number}");
+            number += 1;
+            if !self.taken.contains_key(&candidate) {
+                self.taken.insert(name, number);
+                self.taken.insert(candidate.clone(), 2);
+                return candidate;
+            }
+        }
+    }
+
+    /// Whether a name is taken.
+    pub(super) fn holds(&self, name: &str) -> bool {
+        self.taken.contains_key(name)
+    }
+}
+
+/// Whether an identifier could be mistaken for one of the emitter's own short names: `t` (values) or
+/// `p` (parts) and a number.
+pub(super) fn looks_generated(name: &str) -> bool {
+    let rest = name.strip_prefix(['t', 'p']);
+    rest.is_some_and(|r| !r.is_empty() && r.bytes().all(|b| b.is_ascii_digit()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identifiers_avoid_reserved_words_and_foreign_letters() {
+        for (text, expected) in [
+            ("marble", "marble"),
+            ("3d noise!", "n3d_noise"),
+            ("a__b_", "a_b"),
+            ("σ", "x"),
+            ("texture", "texture_value"),
+            ("Pass", "Pass_value"),
+            ("lerp", "lerp_value"),
+            ("gl_Position", "gl_Position_value"),
+            ("thread", "thread_value"),
+            ("_", "x"),
+            ("fn", "fn_value"),
+            ("Wald & Höhe", "Wald_H_he"),
+        ] {
+            assert_eq!(identifier(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_scope_never_gives_a_name_twice() {
+        let mut scope = Scope::default();
+        let given: Vec<_> = ["a", "a_2", "a", "a", "a_2"]
+            .map(|n| scope.take(n.to_owned()))
+            .into();
+        assert_eq!(given, ["a", "a_2", "a_3", "a_4", "a_2_2"]);
+    }
+}

@@ -1,0 +1,269 @@
+//! The Gaussian-statistics check: the class of every signal, why it has it, what it depends on, and
+//! how far its filtered value is expected to be from the truth.
+//!
+//! | inputs that vary | linear | product, function |
+//! |---|---|---|
+//! | none | constant | constant |
+//! | Gaussian | Gaussian | function of them, if they are at most two; else moments only |
+//! | functions of one Gaussian | function of it | function of it |
+//! | functions of two | moments only | function of them; else moments only |
+//! | moments only | moments only | moments only |
+//! | unknown | unknown | unknown |
+//!
+//! *Gaussians* are counted as signals, not as sources: the sum of a hundred noises is one Gaussian
+//! that can be fused into what follows it. The position counts as two, one of its components as
+//! one.
+
+mod class;
+mod closure;
+mod report;
+mod sources;
+
+use crate::{Behaviour, Diagnostic, Graph, Input, InputView, Literal, Node, NodeId, Source};
+pub use class::Class;
+use class::{Incoming, Reason};
+pub use sources::Sources;
+
+/// What the check lets pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CheckOptions {
+    /// Whether signals without statistics may be sampled; otherwise they are errors.
+    pub allow_sampling: bool,
+}
+
+/// The statistics of the output of a node.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    /// Its class.
+    pub class: Class,
+    /// The sources that it depends on.
+    pub sources: Sources,
+    /// The pairs of inputs of the node that depend on a common source, whose covariance is carried.
+    pub correlations: Vec<Correlation>,
+    /// The predicted error of closing the moments, root mean square over images on [0, 1],
+    /// dimensionless; the error of the sources' own filtering is not in it. An estimate from
+    /// measured cascades, not a bound.
+    pub error: f32,
+    /// Why it has this class.
+    reason: Reason,
+    /// The input that decided the class, unless the node did.
+    decided_by: Option<NodeId>,
+    /// The Gaussian signals that it is a function of, at most two, each with how many Gaussian
+    /// numbers it holds.
+    entries: class::Entries,
+}
+
+/// Two inputs of a node that depend on a common source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Correlation {
+    /// The one.
+    pub first: &'static str,
+    /// The other.
+    pub second: &'static str,
+    /// A common source; `None` for the position.
+    pub source: Option<NodeId>,
+}
+
+/// A graph that has passed the check, with the statistics of its signals. Only [`check()`] makes it.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    graph: Graph,
+    signals: Vec<Signal>,
+    warnings: Vec<Diagnostic>,
+}
+
+impl Checked {
+    /// The graph.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// The signals, one a node, in the order of the nodes.
+    pub fn signals(&self) -> &[Signal] {
+        &self.signals
+    }
+
+    /// The signal of a node.
+    pub fn signal(&self, node: NodeId) -> &Signal {
+        &self.signals[node.index()]
+    }
+
+    /// What is doubtful but compiles.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// The chain of reasons for the class of a node's signal, from the node to where it was
+    /// decided; long chains are cut.
+    pub fn because(&self, node: NodeId) -> Vec<String> {
+        because(&self.graph, &self.signals, node)
+    }
+}
+
+/// What a class rule sees of a node.
+struct View<'a> {
+    node: &'a Node,
+    signals: &'a [Signal],
+}
+
+/// Whether an input varies over the surface.
+fn varies(signals: &[Signal], input: &Input) -> bool {
+    match input.source {
+        Source::Node(node) => signals[node.index()].class != Class::Constant,
+        Source::Surface => true,
+        Source::Literal(_) | Source::Parameter(_) => false,
+    }
+}
+
+impl InputView for View<'_> {
+    fn varies(&self, port: &str) -> bool {
+        varies(self.signals, self.node.input(port))
+    }
+
+    fn flag(&self, port: &str) -> bool {
+        match self.node.literal(port) {
+            Literal::Boolean(flag) => *flag,
+            other => panic!(
+                "{port} of {} is no truth value: {other:?}",
+                self.node.spec.name
+            ),
+        }
+    }
+
+    fn choice(&self, port: &str) -> &str {
+        match self.node.literal(port) {
+            Literal::Text(name) => name,
+            other => panic!("{port} of {} is no choice: {other:?}", self.node.spec.name),
+        }
+    }
+}
+
+/// Finds the statistics of every signal.
+///
+/// # Errors
+/// `unknown-statistics` for each node without statistics that an output needs, unless sampling is
+/// allowed, when it is a warning of the [`Checked`].
+pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagnostic>> {
+    let needed = needed(&graph);
+    let mut signals: Vec<Signal> = Vec::with_capacity(graph.nodes.len());
+    let mut errors = Vec::new();
+    let mut warnings = Vec::new();
+    let mut incoming = Vec::new();
+    for (index, node) in graph.nodes.iter().enumerate() {
+        let id = NodeId(u32::try_from(index).expect("at most a million nodes"));
+        let behaviour = (node.spec.class)(&View {
+            node,
+            signals: &signals,
+        });
+        incoming.clear();
+        for (port, input) in node.spec.inputs.iter().zip(&node.inputs) {
+            if varies(&signals, input) {
+                incoming.push(match input.source {
+                    Source::Node(source) => {
+                        Incoming::node(port.name, source, &signals[source.index()])
+                    }
+                    _ => Incoming::surface(port.name),
+                });
+            }
+        }
+        let signal = class::signal(id, node, behaviour, &incoming);
+        signals.push(signal);
+        if !needed[index] {
+            continue;
+        }
+        if let Behaviour::Unknown(reason) = behaviour {
+            let message = format!("`{}` (`{}`) has no statistics", node.name, node.spec.name);
+            let diagnostic = if options.allow_sampling {
+                Diagnostic::warning("unknown-statistics", message).help("it will be sampled")
+            } else {
+                let help = "allow sampling, or use a node that has statistics";
+                Diagnostic::error("unknown-statistics", message).help(help)
+            };
+            let diagnostic = diagnostic
+                .at(&*node.pointer)
+                .in_node(&*node.name)
+                .because(reason);
+            let list = if options.allow_sampling {
+                &mut warnings
+            } else {
+                &mut errors
+            };
+            list.push(diagnostic);
+        }
+        warnings.extend(diagonal_position(&graph, node, behaviour));
+    }
+    if errors.is_empty() {
+        Ok(Checked {
+            graph,
+            signals,
+            warnings,
+        })
+    } else {
+        errors.extend(warnings);
+        Err(errors)
+    }
+}
+
+/// One number where a position is wanted stands for both coordinates, which is seldom meant.
+fn diagonal_position(graph: &Graph, node: &Node, behaviour: Behaviour) -> Option<Diagnostic> {
+    if !matches!(behaviour, Behaviour::Gaussian { .. } | Behaviour::Pattern) {
+        return None;
+    }
+    let ports = node.spec.inputs.iter().zip(&node.inputs);
+    for (port, input) in ports {
+        let Source::Node(source) = input.source else {
+            continue;
+        };
+        if port.unit == "uv" && input.ty.components() > 1 && input.from.components() == 1 {
+            let source = &graph.node(source).name;
+            let message = format!(
+                "`{}` of `{}` is a position, but `{source}` is one number",
+                port.name, node.name
+            );
+            return Some(
+                Diagnostic::warning("diagonal-position", message)
+                    .at(format!("{}/inputs/{}", node.pointer, port.name))
+                    .in_node(&*node.name)
+                    .in_port(port.name)
+                    .because("one number stands for both coordinates: the pattern is read along its diagonal"),
+            );
+        }
+    }
+    None
+}
+
+/// Which nodes an output needs.
+fn needed(graph: &Graph) -> Vec<bool> {
+    let mut needed = vec![false; graph.nodes.len()];
+    for output in &graph.outputs {
+        needed[output.node.index()] = true;
+    }
+    for index in (0..graph.nodes.len()).rev() {
+        if needed[index] {
+            for input in &graph.nodes[index].inputs {
+                if let Source::Node(source) = input.source {
+                    needed[source.index()] = true;
+                }
+            }
+        }
+    }
+    needed
+}
+
+/// The chain of reasons of a signal.
+fn because(graph: &Graph, signals: &[Signal], node: NodeId) -> Vec<String> {
+    /// Nobody reads more.
+    const LINKS: usize = 16;
+    let mut reasons = Vec::new();
+    let mut here = Some(node);
+    while let Some(id) = here {
+        if reasons.len() == LINKS {
+            reasons.push("… and so on upstream".to_owned());
+            break;
+        }
+        let signal = &signals[id.index()];
+        reasons.push(signal.reason.text(graph, graph.node(id), signal));
+        here = signal.decided_by;
+    }
+    reasons
+}

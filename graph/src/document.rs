@@ -1,0 +1,142 @@
+//! The JSON document: what is written in a file, by name and without meaning. A tool edits it and
+//! saves it again; [`resolve`](crate::resolve()) gives it meaning.
+
+mod read;
+pub(crate) mod tree;
+mod upgrade;
+mod write;
+
+use indexmap::IndexMap;
+use rustc_hash::FxBuildHasher;
+use serde_json::Value;
+
+use crate::Diagnostic;
+pub(crate) use tree::{Tree, locate};
+
+/// A map that keeps the order in which things were written.
+pub type Map<V> = IndexMap<String, V, FxBuildHasher>;
+
+/// The version of the format that this crate writes; older ones are upgraded when they are read.
+pub const VERSION: u64 = 1;
+
+/// A document.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Document {
+    /// The `$schema` for editors; no meaning here.
+    pub schema: Option<String>,
+    /// The name, after which the generated functions are named.
+    pub name: String,
+    /// The graph.
+    pub body: Body,
+    /// The sub-graphs, used as node type `graph:NAME`.
+    pub graphs: Map<Body>,
+}
+
+/// A graph or a sub-graph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Body {
+    /// What it is.
+    pub doc: Option<String>,
+    /// What may be set from outside.
+    pub inputs: Map<InputEntry>,
+    /// The nodes.
+    pub nodes: Map<NodeEntry>,
+    /// What it computes.
+    pub outputs: Map<Reference>,
+    /// Whatever an editor wants to keep.
+    pub extra: Option<Value>,
+}
+
+/// An input of a graph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InputEntry {
+    /// The name of its type.
+    pub ty: String,
+    /// The default.
+    pub value: Value,
+    /// The smallest value that may be set, a component.
+    pub min: Option<f64>,
+    /// The largest value that may be set, a component.
+    pub max: Option<f64>,
+    /// Where a slider starts.
+    pub soft_min: Option<f64>,
+    /// Where a slider ends.
+    pub soft_max: Option<f64>,
+    /// What it means.
+    pub doc: Option<String>,
+    /// Whatever an editor wants to keep.
+    pub extra: Option<Value>,
+}
+
+/// A node.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodeEntry {
+    /// The name of a node type, or `graph:NAME`.
+    pub ty: String,
+    /// What its inputs hold; the others hold their defaults.
+    pub inputs: Map<Binding>,
+    /// What it is for.
+    pub doc: Option<String>,
+    /// Whatever an editor wants to keep.
+    pub extra: Option<Value>,
+}
+
+/// The output of a node.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reference {
+    /// The name of the node.
+    pub node: String,
+    /// The name of its output: `out` unless the node is a sub-graph.
+    pub output: String,
+}
+
+impl Reference {
+    /// The output `out` of a node.
+    pub fn new(node: impl Into<String>) -> Self {
+        Self {
+            node: node.into(),
+            output: "out".to_owned(),
+        }
+    }
+}
+
+/// What an input of a node holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Binding {
+    /// A literal: a number, an array of numbers, a string, a truth value, stops.
+    Value(Value),
+    /// The output of a node.
+    Node(Reference),
+    /// An input of the graph.
+    Input(String),
+}
+
+impl Document {
+    /// Reads a document from text, with every mistake of its structure. What could be read is
+    /// there even if something else could not; there is no document only where the text is not
+    /// JSON, is not an object, or is of an unknown version.
+    pub fn parse(text: &str) -> (Option<Self>, Vec<Diagnostic>) {
+        match Tree::parse(text) {
+            Ok(mut tree) => Self::from_tree(text, &mut tree),
+            Err(diagnostic) => (None, vec![*diagnostic]),
+        }
+    }
+
+    /// The same for text that is parsed already; the tree is upgraded to the present version.
+    pub(crate) fn from_tree(text: &str, tree: &mut Tree) -> (Option<Self>, Vec<Diagnostic>) {
+        read::read(text, tree)
+    }
+
+    /// The document as JSON of the present version; keys in the customary order.
+    pub fn to_json(&self) -> Value {
+        write::document(self)
+    }
+
+    /// The document as indented text that ends with a line feed.
+    pub fn to_text(&self) -> String {
+        let json = self.to_json();
+        let mut text = serde_json::to_string_pretty(&json).expect("a JSON value always serialises");
+        text.push('\n');
+        text
+    }
+}

@@ -1,0 +1,89 @@
+//! From text to a resolved graph in one step, with every mistake located in the text.
+
+use std::collections::BTreeSet;
+
+use crate::document::{Tree, locate};
+use crate::{Diagnostic, Document, Graph, NodeSpec, resolve};
+
+/// What became of a text.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The document, if the text is one; it may be incomplete where there are errors.
+    pub document: Option<Document>,
+    /// The graph, if there are no errors.
+    pub graph: Option<Graph>,
+    /// Every error and warning, each with its line and column, in the order of the text.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads, upgrades and resolves a document.
+pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
+    let mut tree = match Tree::parse(text) {
+        Ok(tree) => tree,
+        Err(diagnostic) => {
+            return Loaded {
+                document: None,
+                graph: None,
+                diagnostics: vec![*diagnostic],
+            };
+        }
+    };
+    let (document, mut diagnostics) = Document::from_tree(text, &mut tree);
+    let mut graph = None;
+    if let Some(document) = &document {
+        // Without the nodes, every reference would be reported.
+        let sections = ["/nodes", "/inputs", "/graphs"];
+        let lost = diagnostics.iter().any(|diagnostic| {
+            diagnostic
+                .pointer
+                .as_deref()
+                .is_some_and(|pointer| sections.contains(&pointer))
+        });
+        if !lost {
+            let failed = !diagnostics.is_empty();
+            let (resolved, found) = resolve(document, specs);
+            let mut found = without_consequences(&diagnostics, found);
+            locate(text, &tree, &mut found);
+            diagnostics.extend(found);
+            graph = resolved.filter(|_| !failed);
+        }
+    }
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.line, diagnostic.column));
+    Loaded {
+        document,
+        graph,
+        diagnostics,
+    }
+}
+
+/// What resolving found, less what only follows from a mistake of structure: anything in a value of
+/// the wrong JSON type, and anything that has a mistake of structure inside.
+fn without_consequences(structure: &[Diagnostic], found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let pointers: BTreeSet<&str> = structure
+        .iter()
+        .filter_map(|diagnostic| diagnostic.pointer.as_deref())
+        .collect();
+    let wrong: BTreeSet<&str> = structure
+        .iter()
+        .filter(|diagnostic| diagnostic.code == "wrong-json-type")
+        .filter_map(|diagnostic| diagnostic.pointer.as_deref())
+        .collect();
+    if pointers.is_empty() {
+        return found;
+    }
+    let follows = |diagnostic: &Diagnostic| {
+        let Some(pointer) = diagnostic.pointer.as_deref() else {
+            return false;
+        };
+        let inside = format!("{pointer}/");
+        let inner = pointers.range(inside.as_str()..).next();
+        let ends = pointer.match_indices('/').map(|(end, _)| &pointer[..end]);
+        pointers.contains(pointer)
+            || inner.is_some_and(|inner| inner.starts_with(&inside))
+            || ends.into_iter().any(|outer| wrong.contains(outer))
+    };
+    found
+        .into_iter()
+        .filter(|diagnostic| !follows(diagnostic))
+        .collect()
+}

@@ -1,0 +1,91 @@
+//! The ports that noises share, and what they do to the field.
+
+use super::field::Field;
+use mipless_codegen::Lower;
+use mipless_codegen::moments::Signal;
+use mipless_graph::{Default, Node, PortSpec, PortType, Range, Type};
+
+/// Where.
+pub(crate) const TEXCOORD: PortSpec = PortSpec::new(
+    "texcoord",
+    PortType::Exactly(Type::Vector2),
+    Default::Surface,
+    "Where the noise is evaluated.",
+)
+.unit("uv");
+
+/// How fine.
+pub(crate) const FREQUENCY: PortSpec = PortSpec::new(
+    "frequency",
+    PortType::Exactly(Type::Float),
+    Default::Float(1.0),
+    "How many lattice cells fit a unit of the texture space.",
+)
+.range(Range::soft(0.25, 64.0))
+.unit("cells per uv");
+
+/// How strong.
+pub(crate) const AMPLITUDE: PortSpec = PortSpec::new(
+    "amplitude",
+    PortType::Exactly(Type::Float),
+    Default::Float(1.0),
+    "Four standard deviations of the noise.",
+)
+.range(Range::soft(0.0, 4.0));
+
+/// Around what.
+pub(crate) const PIVOT: PortSpec = PortSpec::new(
+    "pivot",
+    PortType::Exactly(Type::Float),
+    Default::Float(0.0),
+    "The mean of the noise.",
+)
+.range(Range::soft(-1.0, 1.0));
+
+/// Which.
+pub(crate) const SEED: PortSpec = PortSpec::new(
+    "seed",
+    PortType::Exactly(Type::Integer),
+    Default::Integer(0),
+    "Selects one of 2³² independent noises.",
+)
+.uniform()
+.range(Range::hard(i32::MIN as f32, i32::MAX as f32).with_soft(0.0, 100.0));
+
+/// Of what shape.
+pub(crate) const KERNEL: PortSpec = PortSpec::new(
+    "kernel",
+    PortType::Choice(&["gaussian"]),
+    Default::Choice("gaussian"),
+    "The kernel at each lattice point; `gaussian` is filtered exactly for any footprint.",
+);
+
+/// texcoord · frequency.
+pub(crate) fn position(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
+    let frequency = lower.signal(node, "frequency");
+    (lower.bundle(node, "texcoord").iter())
+        .map(|axis| lower.algebra.product(axis, &frequency))
+        .collect()
+}
+
+/// No noise leaves this many standard deviations in practice (once in 10⁶ points of a Gaussian).
+const EXTENT: f32 = 5.0;
+
+/// The field of this standard deviation as a signal: pivot + amplitude/4 · X.
+pub(crate) fn shaped(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    field: &Field,
+    sd: f32,
+    position: &[Signal],
+) -> Vec<Signal> {
+    let amplitude = lower.signal(node, "amplitude");
+    let pivot = lower.signal(node, "pivot");
+    let extent = EXTENT * sd;
+    let unit = field.at(lower, position).with_range([-extent, extent]);
+    let b = lower.b();
+    let quarter = b.f32(0.25);
+    let amplitude = amplitude.scale(b, quarter);
+    let scaled = lower.algebra.product(&unit, &amplitude);
+    vec![scaled.add(lower.b(), &pivot)]
+}

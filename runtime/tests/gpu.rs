@@ -1,0 +1,164 @@
+//! Tests on whatever graphics adapter this machine has; they show as ignored where it has none.
+
+use std::time::Duration;
+
+use libtest_mimic::{Arguments, Trial};
+use mipless_codegen::ir::{Builder, FOOTPRINT, Interface, Module, Port, Program, Type};
+use mipless_codegen::wgsl::{Entry, Options, emit};
+use mipless_runtime::cpu::Renderer;
+use mipless_runtime::gpu::{AdapterChoice, Gpu, GpuError};
+use mipless_runtime::job::Job;
+use mipless_runtime::metrics::difference;
+use mipless_runtime::view::{Size, View};
+
+fn main() {
+    let none = matches!(Gpu::new(AdapterChoice::Any), Err(GpuError::NoAdapter(_)));
+    let on_device = |name: &str, test: fn(&Gpu)| {
+        let run = move || {
+            test(&Gpu::new(AdapterChoice::Any)?);
+            Ok(())
+        };
+        Trial::test(name, run).with_ignored_flag(none)
+    };
+    let automatic = || {
+        automatic_choice_never_opens_a_software_adapter();
+        Ok(())
+    };
+    let trials = vec![
+        on_device("a_device_agrees_with_the_cpu", a_device_agrees_with_the_cpu),
+        on_device("a_bad_shader_is_an_error", a_bad_shader_is_an_error),
+        Trial::test("automatic_choice_never_opens_a_software_adapter", automatic),
+    ];
+    libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+/// Waves that turn in a fold, a table read by cell, and an integer hash, over every footprint
+/// number, with a parameter and moments.
+fn program() -> Program {
+    let mut module = Module::default();
+    let table = module.table("steps", vec![0.25, -0.5, 1.0, 0.125, 0.75]);
+
+    let mut body = Builder::new("turn", "One turn.");
+    let index = body.param("index", Type::U32);
+    let (x, y) = (body.param_f32("x"), body.param_f32("y"));
+    let angle = body.param_f32("angle");
+    let turn = body.float_u(index);
+    let angle = body.mul(angle, turn);
+    let (sin, cos) = (body.sin(angle), body.cos(angle));
+    let minus = body.neg(sin);
+    let (a, b) = (
+        body.dot(&[cos, minus], &[x, y]),
+        body.dot(&[sin, cos], &[x, y]),
+    );
+    body.result("x", a);
+    body.result("y", b);
+    let body = body.finish(&mut module);
+
+    let mut b = Builder::new("waves", "Waves.");
+    let [cell_x, cell_y, u, v, du_dx, dv_dx, du_dy, dv_dy] =
+        FOOTPRINT.map(|(name, ty)| b.param(name, ty));
+    let frequency = b.param_f32("frequency");
+    let count = b.u32(5);
+    let turned = b.fold(&body, count, &[u, v], &[frequency]);
+    let area = b.dot(&[du_dx, dv_dx, du_dy, dv_dy], &[du_dx, dv_dx, du_dy, dv_dy]);
+    let one = b.f32(1.0);
+    let damped = b.add(area, one);
+    let damped = b.div(turned[0], damped);
+    let (x, y) = (b.cast_u(cell_x), b.cast_u(cell_y));
+    let multiplier = b.u32(0x9e37_79b1);
+    let hash = b.mul_u(x, multiplier);
+    let hash = b.xor_u(hash, y);
+    let mask = b.u32(7);
+    let hash = b.and_u(hash, mask);
+    let step = b.load(table, hash);
+    b.result("height", damped);
+    b.result("step_x", step);
+    b.result("step_y", turned[1]);
+    let square = b.square(damped);
+    b.result("height_variance", square);
+    b.result("step_x_variance", area);
+    b.result("step_y_variance", square);
+    b.finish(&mut module);
+    let port = |name: &str, ty, default: &[f32]| Port {
+        name: name.into(),
+        ty,
+        default: default.to_vec(),
+    };
+    let interface = Interface {
+        name: "waves".into(),
+        parameters: vec![port("frequency", mipless_graph::Type::Float, &[0.5])],
+        outputs: vec![
+            port("height", mipless_graph::Type::Float, &[]),
+            port("step", mipless_graph::Type::Vector2, &[]),
+        ],
+        moments: true,
+    };
+    Program { module, interface }
+}
+
+fn a_device_agrees_with_the_cpu(gpu: &Gpu) {
+    let program = program();
+    let pipeline = gpu.pipeline(&program).unwrap();
+    let mut renderer = Renderer::<f32>::new(&program);
+    // More pixels than the first chunk and than a row of the dispatch, and views with background.
+    let size = Size::new(433, 331);
+    for (name, frequency) in [("sphere", 0.5f32), ("plane", -1.75)] {
+        let view = View::by_name(name).unwrap();
+        gpu.set_parameters(&pipeline, &[frequency]).unwrap();
+        renderer.set_parameters(&[frequency]);
+        for _ in 0..3 {
+            let (image, timing) = gpu.render(&pipeline, &view, size, Job::default()).unwrap();
+            let expected = renderer.render(&view, size, None, Job::default()).unwrap();
+            assert_eq!(image.names(), expected.names());
+            let mask = view.mask(size);
+            for (channel, name) in image.names().iter().enumerate() {
+                let scale = expected.channels()[channel]
+                    .iter()
+                    .fold(1.0f32, |a, b| a.max(b.abs()));
+                let pairs = image.channels()[channel]
+                    .iter()
+                    .zip(&expected.channels()[channel]);
+                // Devices may round divisions and trigonometric functions less precisely.
+                let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                assert!(worst <= 2e-5 * scale, "{name}: {worst:e} of {scale:e}");
+            }
+            assert!(difference(&image, &expected, Some(&mask)).rms.is_finite());
+            let covered = mask.iter().filter(|&&covered| covered).count() as u64;
+            assert_eq!(timing.footprints, covered);
+            assert!(timing.best() > Duration::ZERO);
+        }
+    }
+}
+
+fn a_bad_shader_is_an_error(gpu: &Gpu) {
+    let good = emit(
+        &program(),
+        &Options {
+            entry: Entry::Compute,
+        },
+    );
+    let broken = [
+        ("fn ", "this is not WGSL "),
+        ("id.x + id.y", "id.x + 1.5f"),
+        ("fn waves_compute", "fn other"),
+        ("@binding(2)", "@binding(7)"),
+    ];
+    for (from, to) in broken {
+        let mut shader = good.clone();
+        shader.source = good.source.replace(from, to);
+        assert_ne!(shader.source, good.source, "{from}");
+        let result = gpu.pipeline_of(shader);
+        assert!(
+            matches!(result, Err(GpuError::Validation(_))),
+            "{to}: {result:?}"
+        );
+    }
+    gpu.pipeline_of(good).unwrap();
+}
+
+fn automatic_choice_never_opens_a_software_adapter() {
+    match Gpu::new(AdapterChoice::HardwareOnly) {
+        Ok(gpu) => assert!(!gpu.report().software, "{}", gpu.report()),
+        Err(error) => assert!(matches!(error, GpuError::NoAdapter(_)), "{error}"),
+    }
+}
