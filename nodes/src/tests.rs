@@ -6,8 +6,8 @@ use mipless_codegen::cpu::{Footprint, eval_program};
 use mipless_codegen::ir::Program;
 use mipless_codegen::{Lower, Method, NodeDef, Options, compile};
 use mipless_graph::{
-    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Type, check, load,
+    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, PortSpec,
+    PortType, Type, check, load,
 };
 use serde_json::{Value, json};
 
@@ -19,10 +19,25 @@ static GAUSSIAN: NodeSpec = NodeSpec {
     aliases: &[],
     category: Category::Noise,
     summary: "A Gaussian number.",
-    doc: Doc { computes: "", statistics: "", accuracy: "", references: "" },
+    doc: Doc {
+        computes: "",
+        statistics: "",
+        accuracy: "",
+        references: "",
+    },
     inputs: &[
-        PortSpec::new("pivot", PortType::Exactly(Type::Float), Default::Float(0.0), "The mean."),
-        PortSpec::new("spread", PortType::Exactly(Type::Float), Default::Float(1.0), "Its σ."),
+        PortSpec::new(
+            "pivot",
+            PortType::Exactly(Type::Float),
+            Default::Float(0.0),
+            "The mean.",
+        ),
+        PortSpec::new(
+            "spread",
+            PortType::Exactly(Type::Float),
+            Default::Float(1.0),
+            "Its σ.",
+        ),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |_| Behaviour::Gaussian { deviation: 0.0 },
@@ -42,7 +57,10 @@ fn gaussian(lower: &mut Lower<'_>, node: &Node) -> mipless_codegen::Bundle {
 
 fn definitions() -> Vec<NodeDef> {
     let mut all = catalogue().to_vec();
-    all.push(NodeDef { spec: &GAUSSIAN, lower: gaussian });
+    all.push(NodeDef {
+        spec: &GAUSSIAN,
+        lower: gaussian,
+    });
     all
 }
 
@@ -50,17 +68,36 @@ fn compiled(text: &str, method: Method) -> Program {
     let definitions = definitions();
     let specs: Vec<&'static NodeSpec> = definitions.iter().map(|def| def.spec).collect();
     let loaded = load(text, &specs);
-    let graph = loaded.graph.unwrap_or_else(|| panic!("{text}\n{:?}", loaded.diagnostics));
-    let checked = check(graph, &CheckOptions { allow_sampling: true })
-        .unwrap_or_else(|diagnostics| panic!("{text}\n{diagnostics:?}"));
-    compile(&checked, &definitions, &Options { method, moments: true, ..Options::default() })
+    let graph = loaded
+        .graph
+        .unwrap_or_else(|| panic!("{text}\n{:?}", loaded.diagnostics));
+    let checked = check(
+        graph,
+        &CheckOptions {
+            allow_sampling: true,
+        },
+    )
+    .unwrap_or_else(|diagnostics| panic!("{text}\n{diagnostics:?}"));
+    compile(
+        &checked,
+        &definitions,
+        &Options {
+            method,
+            moments: true,
+            ..Options::default()
+        },
+    )
 }
 
 /// Means, then variances, of each footprint.
 fn evaluated(text: &str, method: Method, footprints: &[Footprint]) -> Vec<Vec<f64>> {
     let program = compiled(text, method);
-    let defaults: Vec<f32> =
-        program.interface.parameters.iter().flat_map(|p| p.default.clone()).collect();
+    let defaults: Vec<f32> = program
+        .interface
+        .parameters
+        .iter()
+        .flat_map(|p| p.default.clone())
+        .collect();
     eval_program::<f64>(&program, footprints, &defaults)
 }
 
@@ -74,7 +111,10 @@ fn moments(nodes: Value, out: &str) -> (f64, f64) {
 }
 
 fn near(what: &str, actual: f64, expected: f64, tolerance: f64) {
-    assert!((actual - expected).abs() <= tolerance, "{what}: {actual}, not {expected}");
+    assert!(
+        (actual - expected).abs() <= tolerance,
+        "{what}: {actual}, not {expected}"
+    );
 }
 
 #[test]
@@ -83,11 +123,27 @@ fn specs_are_well_formed() {
     for def in catalogue() {
         let spec = def.spec;
         assert!(names.insert(spec.name), "{} twice", spec.name);
-        for text in [spec.summary, spec.doc.computes, spec.doc.statistics, spec.doc.accuracy, spec.doc.references] {
-            assert!(text.ends_with('.'), "{}: a sentence ends: {text}", spec.name);
+        for text in [
+            spec.summary,
+            spec.doc.computes,
+            spec.doc.statistics,
+            spec.doc.accuracy,
+            spec.doc.references,
+        ] {
+            assert!(
+                text.ends_with('.'),
+                "{}: a sentence ends: {text}",
+                spec.name
+            );
         }
         for port in spec.inputs {
-            assert!(port.doc.ends_with('.'), "{}.{}: {}", spec.name, port.name, port.doc);
+            assert!(
+                port.doc.ends_with('.'),
+                "{}.{}: {}",
+                spec.name,
+                port.name,
+                port.doc
+            );
             let numbers: Vec<f32> = match port.default {
                 Default::Float(x) => vec![x],
                 Default::Integer(i) => vec![i as f32],
@@ -97,14 +153,32 @@ fn specs_are_well_formed() {
             };
             let range = port.range;
             for x in numbers {
-                assert!(x >= range.min && x <= range.max, "{}.{}: {x}", spec.name, port.name);
-                assert!(!(range.nonzero && x == 0.0), "{}.{}: divides", spec.name, port.name);
+                assert!(
+                    x >= range.min && x <= range.max,
+                    "{}.{}: {x}",
+                    spec.name,
+                    port.name
+                );
+                assert!(
+                    !(range.nonzero && x == 0.0),
+                    "{}.{}: divides",
+                    spec.name,
+                    port.name
+                );
             }
-            assert!(range.soft_min >= range.min && range.soft_max <= range.max, "{}", port.name);
+            assert!(
+                range.soft_min >= range.min && range.soft_max <= range.max,
+                "{}",
+                port.name
+            );
         }
         let example: Value = serde_json::from_str(spec.example)
             .unwrap_or_else(|error| panic!("example of {}: {error}", spec.name));
-        assert_eq!(example["nodes"][spec.name]["type"], spec.name, "example of {}", spec.name);
+        assert_eq!(
+            example["nodes"][spec.name]["type"], spec.name,
+            "example of {}",
+            spec.name
+        );
     }
     for alias in catalogue().iter().flat_map(|def| def.spec.aliases) {
         assert!(names.insert(alias), "{alias} is a name or alias already");
@@ -116,8 +190,14 @@ fn files_are_named_after_their_nodes_and_categories_are_together() {
     let source = include_str!("lib.rs");
     for def in catalogue() {
         let name = def.spec.name;
-        assert!(source.contains(&format!("\nmod {name};")), "{name}.rs is no module");
-        assert!(source.contains(&format!("    {name}::DEF,")), "{name} is not its file's");
+        assert!(
+            source.contains(&format!("\nmod {name};")),
+            "{name}.rs is no module"
+        );
+        assert!(
+            source.contains(&format!("    {name}::DEF,")),
+            "{name} is not its file's"
+        );
     }
     let categories: Vec<Category> = catalogue().iter().map(|def| def.spec.category).collect();
     assert!(categories.is_sorted(), "sorted by category");
@@ -128,17 +208,34 @@ fn pages_and_descriptions_say_everything() {
     let description = describe(catalogue());
     for def in catalogue() {
         let text = page(def);
-        for heading in ["What it computes", "Statistics", "Accuracy", "Example", "References"] {
-            assert!(text.contains(&format!("## {heading}\n")), "{}: {heading}", def.spec.name);
+        for heading in [
+            "What it computes",
+            "Statistics",
+            "Accuracy",
+            "Example",
+            "References",
+        ] {
+            assert!(
+                text.contains(&format!("## {heading}\n")),
+                "{}: {heading}",
+                def.spec.name
+            );
         }
         let node = &description["nodes"][def.spec.name];
         for port in def.spec.inputs {
-            assert!(text.contains(&format!("| `{}` |", port.name)), "{}", def.spec.name);
+            assert!(
+                text.contains(&format!("| `{}` |", port.name)),
+                "{}",
+                def.spec.name
+            );
             assert_eq!(node["inputs"][port.name]["doc"], port.doc);
         }
         assert!(node["example"].is_object(), "{}", def.spec.name);
     }
-    assert_eq!(description["nodes"]["place2d"]["inputs"]["scale"]["nonzero"], true);
+    assert_eq!(
+        description["nodes"]["place2d"]["inputs"]["scale"]["nonzero"],
+        true
+    );
 }
 
 /// Positions that lie on no edge of the examples.
@@ -146,7 +243,12 @@ fn places(size: f32) -> Vec<Footprint> {
     (0..60)
         .map(|i| {
             let uv = [0.317_31 * i as f32, 0.211_73 * i as f32].map(|x| (x + 0.021).fract());
-            Footprint { cell: [i % 3, -i % 2], uv, du: [size, 0.0], dv: [0.3 * size, size] }
+            Footprint {
+                cell: [i % 3, -i % 2],
+                uv,
+                du: [size, 0.0],
+                dv: [0.3 * size, size],
+            }
         })
         .collect()
 }
@@ -156,13 +258,28 @@ fn a_footprint_of_nothing_gives_the_value() {
     for def in catalogue() {
         let point = evaluated(def.spec.example, Method::Point, &places(0.0));
         let components = point.len() / 2;
-        for method in [Method::Naive, Method::Ensemble, Method::Local, Method::Quad, Method::Auto] {
+        for method in [
+            Method::Naive,
+            Method::Ensemble,
+            Method::Local,
+            Method::Quad,
+            Method::Auto,
+        ] {
             let filtered = evaluated(def.spec.example, method, &places(0.0));
             for i in 0..components {
                 for (place, (a, b)) in filtered[i].iter().zip(&point[i]).enumerate() {
-                    near(&format!("{} by {method} at {place}", def.spec.name), *a, *b, 1e-5);
+                    near(
+                        &format!("{} by {method} at {place}", def.spec.name),
+                        *a,
+                        *b,
+                        1e-5,
+                    );
                     let variance = filtered[components + i][place];
-                    assert!((0.0..1e-5).contains(&variance), "{}: {variance}", def.spec.name);
+                    assert!(
+                        (0.0..1e-5).contains(&variance),
+                        "{}: {variance}",
+                        def.spec.name
+                    );
                 }
             }
         }
@@ -174,7 +291,10 @@ fn a_large_footprint_gives_the_far_field() {
     let far = |name: &str, component: usize| {
         let spec = crate::find(name).expect("a node").spec;
         let results = evaluated(spec.example, Method::Local, &places(300.0));
-        (results[component][5], results[results.len() / 2 + component][5])
+        (
+            results[component][5],
+            results[results.len() / 2 + component][5],
+        )
     };
     let (mean, variance) = far("stripes", 0);
     near("stripes", mean, 0.35, 1e-5);
@@ -183,8 +303,18 @@ fn a_large_footprint_gives_the_far_field() {
     near("sine", mean, 0.0, 1e-5);
     near("variance of sine", variance, 0.5, 1e-4);
     // #e8c27a and #20303c in linear red: 0.8069523 and 0.0144438.
-    near("checkerboard", far("checkerboard", 0).0, (0.806_952_3 + 0.014_443_8) / 2.0, 1e-4);
-    near("luminance", far("luminance", 0).0, 0.5 * far_luminance(), 1e-4);
+    near(
+        "checkerboard",
+        far("checkerboard", 0).0,
+        (0.806_952_3 + 0.014_443_8) / 2.0,
+        1e-4,
+    );
+    near(
+        "luminance",
+        far("luminance", 0).0,
+        0.5 * far_luminance(),
+        1e-4,
+    );
 }
 
 /// The luminance of #c08a52.
@@ -213,10 +343,20 @@ fn transfers_of_a_gaussian_have_their_closed_forms() {
     near("variance of sin", variance, second - mean * mean, 1e-6);
     let (mean, variance) = of(json!({ "type": "power", "inputs": { "in1": x, "in2": 2 } }));
     near("power", mean, 0.34, 1e-6);
-    near("variance of power", variance, 2.0 * 0.0625 + 4.0 * 0.09 * 0.25, 1e-6);
+    near(
+        "variance of power",
+        variance,
+        2.0 * 0.0625 + 4.0 * 0.09 * 0.25,
+        1e-6,
+    );
     let (mean, variance) = of(json!({ "type": "multiply", "inputs": { "in1": x, "in2": x } }));
     near("a square by multiply", mean, 0.34, 1e-6);
-    near("its variance", variance, 2.0 * 0.0625 + 4.0 * 0.09 * 0.25, 1e-6);
+    near(
+        "its variance",
+        variance,
+        2.0 * 0.0625 + 4.0 * 0.09 * 0.25,
+        1e-6,
+    );
     let (mean, variance) = of(json!({ "type": "subtract", "inputs": { "in1": x, "in2": x } }));
     assert_eq!((mean, variance), (0.0, 0.0), "a signal less itself");
     let (mean, _) = of(json!({ "type": "max", "inputs": { "in1": x, "in2": 0 } }));
@@ -241,9 +381,12 @@ fn equal_functions_have_equal_moments() {
     let swapped = of(json!({ "type": "range", "inputs": {
         "in": x, "inlow": 0.6, "inhigh": 0.1, "outlow": 0.6, "outhigh": 0.1, "doclamp": true } }));
     let smooth = of(json!({ "type": "smoothstep", "inputs": { "in": x } }));
-    let smooth_ramp = of(json!({ "type": "colorramp", "inputs": { "in": x, "interpolation": "smooth" } }));
+    let smooth_ramp =
+        of(json!({ "type": "colorramp", "inputs": { "in": x, "interpolation": "smooth" } }));
     for (name, other, one) in [
-        ("ramp", ramp, clamp), ("range", range, clamp), ("swapped range", swapped, clamp),
+        ("ramp", ramp, clamp),
+        ("range", range, clamp),
+        ("swapped range", swapped, clamp),
         ("smooth ramp", smooth_ramp, smooth),
     ] {
         near(name, other.0, one.0, 2e-6);
@@ -254,19 +397,32 @@ fn equal_functions_have_equal_moments() {
 #[test]
 fn bounds_that_vary_are_limits_too() {
     let of = |node: Value| {
-        moments(json!({
-            "x": { "type": "test_gaussian", "inputs": { "pivot": 0.3, "spread": 0.4 } },
-            "edge": { "type": "test_gaussian", "inputs": { "pivot": 0.0, "spread": 0.3 } },
-            "y": node
-        }), "y")
+        moments(
+            json!({
+                "x": { "type": "test_gaussian", "inputs": { "pivot": 0.3, "spread": 0.4 } },
+                "edge": { "type": "test_gaussian", "inputs": { "pivot": 0.0, "spread": 0.3 } },
+                "y": node
+            }),
+            "y",
+        )
     };
     let (x, edge) = (json!({ "node": "x" }), json!({ "node": "edge" }));
     // The difference has mean 0.3 and spread 0.5.
     let (mean, _) = of(json!({ "type": "step", "inputs": { "in": x, "edge": edge } }));
-    near("step at a varying edge", mean, 0.725_746_882_249_926_4, 1e-6);
+    near(
+        "step at a varying edge",
+        mean,
+        0.725_746_882_249_926_4,
+        1e-6,
+    );
     // Low far below: min(x, edge) = 0 − E[max(edge − x, 0)] + … = E[x] − E[max(x − edge, 0)].
     let (mean, _) = of(json!({ "type": "clamp", "inputs": { "in": x, "low": -50, "high": edge } }));
-    near("clamp to a varying bound", mean, 0.3 - (0.3 * 0.725_746_88 + 0.5 * 0.333_224_6), 1e-5);
+    near(
+        "clamp to a varying bound",
+        mean,
+        0.3 - (0.3 * 0.725_746_88 + 0.5 * 0.333_224_6),
+        1e-5,
+    );
     let (mean, variance) = of(json!({ "type": "divide", "inputs": { "in1": x, "in2": 4 } }));
     near("divide by a number", mean, 0.075, 1e-7);
     near("its variance", variance, 0.01, 1e-7);
@@ -279,7 +435,12 @@ fn bounds_that_vary_are_limits_too() {
         "y",
     );
     // E[1/X] = Σ (2k − 1)!! σ^{2k} / m^{2k + 1}.
-    near("divide by a signal", mean, 0.2 * (1.0 + 0.01 + 3e-4 + 1.5e-5 + 1e-6), 2e-6);
+    near(
+        "divide by a signal",
+        mean,
+        0.2 * (1.0 + 0.01 + 3e-4 + 1.5e-5 + 1e-6),
+        2e-6,
+    );
 }
 
 #[test]
@@ -299,14 +460,30 @@ fn coordinates_keep_their_detail_far_from_the_origin() {
         .to_string()
     };
     let at = |cell: i32, u: f32, v: f32| Footprint {
-        cell: [cell, cell], uv: [u, v], du: [0.01, 0.0], dv: [0.0, 0.01],
+        cell: [cell, cell],
+        uv: [u, v],
+        du: [0.01, 0.0],
+        dv: [0.0, 0.01],
     };
     for order in ["SRT", "TRS"] {
         for method in [Method::Point, Method::Local] {
-            let near_by = evaluated(&graph(90.0, order), method, &[at(0, 0.3, 0.7), at(0, 0.55, 0.2)]);
-            let far = evaluated(&graph(90.0, order), method, &[at(4_000_000, 0.3, 0.7), at(4_000_000, 0.55, 0.2)]);
+            let near_by = evaluated(
+                &graph(90.0, order),
+                method,
+                &[at(0, 0.3, 0.7), at(0, 0.55, 0.2)],
+            );
+            let far = evaluated(
+                &graph(90.0, order),
+                method,
+                &[at(4_000_000, 0.3, 0.7), at(4_000_000, 0.55, 0.2)],
+            );
             for i in 0..2 {
-                near(&format!("{order} by {method}"), far[0][i], near_by[0][i], 1e-5);
+                near(
+                    &format!("{order} by {method}"),
+                    far[0][i],
+                    near_by[0][i],
+                    1e-5,
+                );
             }
         }
     }
@@ -318,7 +495,12 @@ fn coordinates_keep_their_detail_far_from_the_origin() {
         near(order, results[1][0], x, 1e-6);
     }
     let turned = evaluated(&graph(30.0, "SRT"), Method::Point, &[at(0, 0.3, 0.7)]);
-    near("30°", turned[1][0], -0.4 * 0.866_025_4 - 0.8 * 0.5 + 0.25, 1e-6);
+    near(
+        "30°",
+        turned[1][0],
+        -0.4 * 0.866_025_4 - 0.8 * 0.5 + 0.25,
+        1e-6,
+    );
 }
 
 #[test]
@@ -340,6 +522,11 @@ fn a_checkerboard_is_color1_where_the_cells_are_even() {
     for (place, value) in places.iter().zip(&results[0]) {
         let (u, v) = (place.cell[0] as f32 + place.uv[0], place.uv[1]);
         let cells = (u * 4.0 - 1.0).floor() as i32 + (v * 2.0).floor() as i32;
-        near("square", *value, f64::from(u8::from(cells.rem_euclid(2) == 0)), 1e-6);
+        near(
+            "square",
+            *value,
+            f64::from(u8::from(cells.rem_euclid(2) == 0)),
+            1e-6,
+        );
     }
 }
