@@ -13,10 +13,12 @@ use mipless_graph::{Node, NodeId, Source};
 use std::rc::Rc;
 
 /// That a node is a function of one scalar signal alone.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Chain {
     /// The node whose output the function takes.
     entry: NodeId,
+    /// That output, which outlives its other readers.
+    signal: Rc<Signal>,
     /// How many nodes between are not linear, at most.
     bends: u32,
     /// Whether no live parameter shapes it.
@@ -50,16 +52,13 @@ impl Lower<'_> {
         }
         let before = self.chain(node)?;
         let bends = before.bends + u32::from(self.algebra.bent);
-        self.chains[index] = Some(Chain { bends, ..before });
-        if !self.algebra.bent || before.bends == 0 || !before.fixed {
+        self.chains[index] = Some(Chain { bends, ..before.clone() });
+        let [low, high] = before.signal.range;
+        let bounded = low.is_finite() && high.is_finite() && low < high;
+        if !self.algebra.bent || before.bends == 0 || !before.fixed || !bounded {
             return None;
         }
-        let entry = self.bundles[before.entry.index()].as_ref()?[0].clone();
-        let [low, high] = entry.range;
-        if !(low.is_finite() && high.is_finite() && low < high) {
-            return None;
-        }
-        Some(self.tabulated(index, node, before.entry, &entry))
+        Some(self.tabulated(index, node, before.entry, &before.signal))
     }
 
     /// The one signal that all varying inputs of a node are functions of.
@@ -77,8 +76,8 @@ impl Lower<'_> {
                 Source::Surface => return None,
                 Source::Node(id) => *id,
             };
-            let this = match self.chains[id.index()] {
-                Some(chain) => chain,
+            let this = match &self.chains[id.index()] {
+                Some(chain) => chain.clone(),
                 None => {
                     let bundle = self.bundles[id.index()].as_ref()?;
                     if bundle.iter().all(|signal| signal.is_certain(&self.algebra.b)) {
@@ -89,7 +88,8 @@ impl Lower<'_> {
                     if bundle.len() != 1 {
                         return None;
                     }
-                    Chain { entry: id, bends: 0, fixed: true }
+                    let signal = Rc::new(bundle[0].clone());
+                    Chain { entry: id, signal, bends: 0, fixed: true }
                 }
             };
             fixed &= this.fixed;

@@ -199,11 +199,11 @@ pub enum Shape {
 impl Transfer for Piecewise {
     fn value(&self, b: &mut Builder, x: Value) -> Value {
         let zero = b.f32(0.0);
-        let x = self.limited(b, x, zero);
-        let linear = b.mul(self.slope, x);
+        let limited = self.limited(b, x, zero);
+        let linear = b.mul(self.slope, limited);
         let mut sum = b.add(self.offset, linear);
         for knot in &self.knots {
-            let distance = b.sub(x, knot.at);
+            let distance = b.sub(limited, knot.at);
             let positive = b.max(distance, zero);
             let rise = b.mul(knot.bend, positive);
             sum = b.add(sum, rise);
