@@ -4,7 +4,7 @@
 use mipless::{Footprint, Literal, Method, Options, Texture};
 use mipless_tests::case::all;
 use mipless_tests::random::Random;
-use mipless_tests::tolerance::{FAR_FIELD, RANGE, SIGNIFICANCE, VANISHING, p_value};
+use mipless_tests::tolerance::{FAR_FIELD, FAR_FIELD_OF_PATTERNS, LEFT_OUT, RANGE, SIGNIFICANCE, VANISHING, p_value};
 use mipless_tests::{METHODS, name_of};
 
 /// Methods that filter.
@@ -142,14 +142,20 @@ fn a_vanishing_footprint_gives_the_point_value() {
                 let found = evaluate(&case.texture, method, &footprints);
                 for channel in 0..components {
                     let pairs = found[channel].iter().zip(&wanted[channel]);
-                    let off = |(a, b): (&f32, &f32)| {
-                        f64::from((a - b).abs()) / f64::from(b.abs()).max(1.0)
+                    let beyond = |(&a, &b): (&f32, &f32)| {
+                        let off = f64::from((a - b).abs());
+                        !(off <= VANISHING * f64::from(b.abs()).max(1.0))
                     };
-                    let worst = pairs.map(off).fold(0.0, f64::max);
-                    if worst > VANISHING {
+                    let wrong: Vec<_> =
+                        pairs.zip(&footprints).filter(|&(pair, _)| beyond(pair)).collect();
+                    // Points within a rounding of an edge.
+                    if wrong.len() as f64 > LEFT_OUT * points.len() as f64 {
+                        let ((a, b), footprint) = wrong[0];
                         failures.push(format!(
-                            "{} by {method} at {size:e}, channel {channel}: {worst:.2e}",
-                            case.name
+                            "{} by {method}, channel {channel}: {a} for {b} at {footprint:?}, and \
+                             {} more",
+                            case.name,
+                            wrong.len() - 1
                         ));
                     }
                 }
@@ -171,11 +177,19 @@ fn a_huge_footprint_gives_the_mean_of_the_far_field() {
     let channels: usize = cases.iter().map(|case| ranges(&case.texture).len()).sum();
     let level = SIGNIFICANCE / (channels * FILTERS.len()) as f64;
     for case in cases {
-        let components = ranges(&case.texture).len();
+        let allowed: Vec<f64> = (case.texture.outputs().iter())
+            .flat_map(|output| {
+                let signal = case.texture.checked().signal(output.node);
+                let pattern = signal.sources.nodes().is_empty();
+                let own = if pattern { FAR_FIELD_OF_PATTERNS } else { FAR_FIELD };
+                let allowed = own + f64::from(signal.error);
+                std::iter::repeat_n(allowed, output.ty.components())
+            })
+            .collect();
         let samples = evaluate(&case.texture, Method::Point, &points);
         for method in FILTERS {
             let found = evaluate(&case.texture, method, &huge);
-            for channel in 0..components {
+            for (channel, allowed) in allowed.iter().enumerate() {
                 let samples = samples[channel].iter().map(|&x| f64::from(x));
                 let n = points.len() as f64;
                 let mean = samples.clone().sum::<f64>() / n;
@@ -183,7 +197,7 @@ fn a_huge_footprint_gives_the_mean_of_the_far_field() {
                 let range = samples.clone().fold(f64::MIN, f64::max) - samples.fold(f64::MAX, f64::min);
                 let off = (f64::from(found[channel][0]) - mean).abs();
                 let error = (variance / n).sqrt().max(1e-6 * mean.abs().max(1.0));
-                let beyond = (off - FAR_FIELD * range).max(0.0);
+                let beyond = (off - allowed * range).max(0.0);
                 if p_value(beyond / error) < level {
                     failures.push(format!(
                         "{}_{}, channel {channel}: {} for {mean:.5} ± {error:.1e}",
