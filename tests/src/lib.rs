@@ -14,6 +14,7 @@
 pub mod case;
 pub mod generated;
 pub mod random;
+pub mod random_graph;
 pub mod tolerance;
 
 use mipless::Method;

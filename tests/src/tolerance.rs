@@ -8,6 +8,10 @@ pub const F32_AGREES: f64 = 1e-5;
 /// The share of pixels that need not agree with the oracle: those that an edge runs through.
 pub const LEFT_OUT: f64 = 0.01;
 
+/// The same for samples of the pixel: towards the horizon a pixel is a hundred units of texture space
+/// long, and the place of a sample in it has a rounding of 4e-6 units, which is no error of the mean.
+pub const LEFT_OUT_OF_SAMPLES: f64 = 0.05;
+
 /// The largest difference between a device and the CPU over the pixels that agree with the oracle,
 /// relative to max(1, |x|). WGSL lets a device be off by 2.5 units in the last place in a division,
 /// by 3 + 2|x| in exp and by 2⁻¹¹ absolutely in sin and cos; the devices met so far stay a hundred
@@ -31,10 +35,10 @@ pub const SIGNIFICANCE: f64 = 1e-3;
 /// distributions from a Gaussian (0.0046 of each jump, four jumps in a ramp).
 pub const FAR_FIELD: f64 = 0.02;
 
-/// The same for outputs that no noise reaches. Their chains are closed node by node, and the far
+/// The same for graphs with waves of position. Their chains are closed node by node, and the far
 /// field of a sine is an arcsine distribution, whose CDF is up to 0.097 from the normal one of its
 /// variance: the error of a unit step that reads it.
-pub const FAR_FIELD_OF_PATTERNS: f64 = 0.1;
+pub const FAR_FIELD_OF_WAVES: f64 = 0.1;
 
 /// The two-sided p-value of a standard normal number, from above: Mills' ratio is at most 1/z.
 pub fn p_value(z: f64) -> f64 {
