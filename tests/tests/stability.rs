@@ -2,6 +2,7 @@
 //! vanishing footprints give the point value and huge ones the mean of the far field.
 
 use mipless::{Footprint, Literal, Method, Options, Texture};
+use mipless_codegen::cpu::eval_program;
 use mipless_tests::case::all;
 use mipless_tests::random::Random;
 use mipless_tests::tolerance::{FAR_FIELD, FAR_FIELD_OF_WAVES, LEFT_OUT, RANGE, SIGNIFICANCE, VANISHING, p_value};
@@ -106,6 +107,34 @@ fn extreme_footprints_give_finite_numbers_in_range() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// The entry turns what overflows into 0; the function that it calls must not need that.
+#[test]
+fn what_the_entry_calls_is_finite_by_itself() {
+    let regular = |x: &&Footprint| {
+        x.uv.iter().all(|u| u.abs() <= 1e6) && x.du.iter().chain(&x.dv).all(|d| d.abs() <= 1e9)
+    };
+    let footprints: Vec<Footprint> = extremes().iter().filter(regular).copied().collect();
+    assert!(footprints.len() > 100);
+    for case in all() {
+        for method in [Method::Point, Method::Naive, Method::Ensemble, Method::Local, Method::Quad] {
+            let options = Options { method, moments: true, ..Options::default() };
+            let mut program = case.texture.compile(&options);
+            program.module.functions.pop();
+            let called = program.module.entry();
+            assert!(called.name.ends_with(&format!("_{method}")), "{} is called", called.name);
+            let defaults = program.interface.parameters.iter().flat_map(|p| p.default.clone());
+            let parameters: Vec<f32> = defaults.collect();
+            let outputs = eval_program::<f32>(&program, &footprints, &parameters);
+            for (channel, output) in outputs.iter().enumerate() {
+                if let Some(lane) = output.iter().position(|x| !x.is_finite()) {
+                    let (x, at) = (output[lane], footprints[lane]);
+                    panic!("{} by {method}, channel {channel}: {x} at {at:?}", case.name);
+                }
+            }
+        }
+    }
 }
 
 /// Random positions, none of which lies on a round number.
