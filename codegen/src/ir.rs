@@ -25,6 +25,7 @@
 
 mod build;
 mod op;
+mod table;
 #[cfg(test)]
 pub(crate) mod random;
 mod text;
@@ -32,6 +33,7 @@ mod verify;
 
 pub use build::{Builder, FunctionRef};
 pub use op::{Op, OpInfo};
+pub use table::{Numbers, Table};
 pub(crate) use op::for_each_op;
 pub use text::ParseError;
 pub use verify::{Violation, verify};
@@ -207,15 +209,6 @@ impl Function {
             _ => None,
         }
     }
-}
-
-/// A table of numbers that [`Inst::Load`] reads.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Table {
-    /// A readable name.
-    pub name: String,
-    /// The numbers; at least one.
-    pub data: Vec<f32>,
 }
 
 /// Functions and tables; the last function is the entry.

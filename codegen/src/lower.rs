@@ -15,10 +15,10 @@ pub use method::{Method, ParseMethodError, PixelFilter};
 use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
 };
-use crate::moments::{Algebra, Mode, Sampled, Signal, Symbol};
+use crate::moments::{Algebra, Mode, Samples, Signal, Symbol};
 use mipless_graph::{Checked, Graph, Literal, Node, NodeId, NodeSpec, Source, Stops, Type};
 use rustc_hash::FxHashMap;
-use std::{cell::RefCell, rc::Rc};
+use std::cell::RefCell;
 
 /// The components of a node's output.
 pub type Bundle = Vec<Signal>;
@@ -68,9 +68,8 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         moments: options.moments,
     };
     let live = symbols::live(graph);
-    let inner = symbols::inner(graph, &live);
     let (functions, fused) = (RefCell::default(), RefCell::default());
-    let compiler = Compiler { graph, catalogue, options, live, functions, fused, inner };
+    let compiler = Compiler { graph, catalogue, options, live, functions, fused };
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
     Program { module: module.pruned(), interface }
@@ -97,9 +96,7 @@ struct Compiler<'a> {
     /// The functions that nodes share, by their keys.
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
-    fused: RefCell<FxHashMap<usize, Rc<Vec<Sampled>>>>,
-    /// Whether something but an output reads each node's output.
-    inner: Vec<bool>,
+    fused: RefCell<FxHashMap<usize, Samples>>,
 }
 
 /// The parameters of an entry or of a function that stands for the graph.
@@ -212,7 +209,7 @@ impl<'a> Lower<'a> {
             let mut bundle = (definition.lower)(self, node);
             assert_eq!(bundle.len(), node.ty.components(), "components of {}", node.spec.name);
             self.nonlinear |= self.algebra.bent;
-            if let Some(fused) = self.fuse(index, node) {
+            if let Some(fused) = self.fuse(index, node, &bundle) {
                 bundle = fused;
             }
             self.carriers.born(&bundle);

@@ -25,6 +25,8 @@ mod product;
 mod signal;
 mod smooth;
 mod tabulated;
+#[cfg(test)]
+mod tests;
 mod transfer;
 mod wave;
 
@@ -34,7 +36,7 @@ pub use normal::Normal;
 pub use piecewise::{Knot, Piecewise, Shape};
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
-pub(crate) use tabulated::{Demand, Sampled, Tabulated};
+pub(crate) use tabulated::{Sampled, Samples, Tabulated, sample_points};
 pub use transfer::{Gaussian, Moments, Transfer};
 pub use wave::SquareWave;
 

@@ -42,7 +42,7 @@ mod statement;
 
 pub use name::identifier;
 
-use crate::ir::{FunctionId, Inst, Program, Type};
+use crate::ir::{Numbers, FunctionId, Inst, Program, Type};
 use entry::{Names, entry_text, face, push_entry_point, push_structs};
 use function::{Context, Signature, is_packed};
 use name::{Scope, camel};
@@ -176,10 +176,17 @@ pub struct OutputField {
 /// All tables of a shader, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
-    /// The numbers.
-    pub data: Vec<f32>,
+    /// Their numbers, in order; computed when they are first read.
+    pub numbers: Vec<Numbers>,
     /// Each table's name, first number and length.
     pub entries: Vec<(String, u32, u32)>,
+}
+
+impl Tables {
+    /// All numbers, one table after the other.
+    pub fn data(&self) -> Vec<f32> {
+        self.numbers.iter().flat_map(|numbers| numbers.iter().copied()).collect()
+    }
 }
 
 /// WGSL text and what a host needs to know of it.
@@ -300,15 +307,15 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
 
     let tables = (!module.tables.is_empty()).then(|| {
         let mut tables = Tables {
-            data: Vec::new(),
+            numbers: Vec::new(),
             entries: Vec::new(),
         };
+        let mut first = 0;
         for table in &module.tables {
-            let first = tables.data.len() as u32;
-            tables
-                .entries
-                .push((table.name.clone(), first, table.data.len() as u32));
-            tables.data.extend_from_slice(&table.data);
+            let length = table.data.len() as u32;
+            tables.entries.push((table.name.clone(), first, length));
+            tables.numbers.push(table.data.clone());
+            first += length;
         }
         tables
     });

@@ -67,7 +67,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Color3),
-    class: class,
+    class,
     example: r##"{
   "version": 1,
   "name": "checkerboard_example",

@@ -20,7 +20,7 @@ static SPEC: NodeSpec = NodeSpec {
             with positive weights. They exist only where in2 stays away from 0: its mean is kept \
             at least four standard deviations from it. Approximate.",
         accuracy: "By a number, exact to rounding. By a varying signal with |mean| ≥ 6 standard \
-            deviations, the mean is within 2e-4 of its value; nearer to 0 the quotient has no \
+            deviations, the mean is within 2e-5 of its value; nearer to 0 the quotient has no \
             moments and the result is only bounded. Held by `codegen/src/moments/tests.rs` \
             against dense numerical integration in f64.",
         references: "Marsaglia 2006, *Ratios of Normal Variables*, §2 (no moments without truncation). \
@@ -40,7 +40,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.1, 4.0).nonzero()),
     ],
     output: OutputType::Widest,
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "divide_example",

@@ -95,3 +95,6 @@ pub fn specs() -> Vec<&'static NodeSpec> {
 pub fn find(name: &str) -> Option<&'static NodeDef> {
     CATALOGUE.iter().find(|def| def.spec.name == name)
 }
+
+#[cfg(test)]
+mod tests;

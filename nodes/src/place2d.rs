@@ -81,7 +81,7 @@ static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Exactly(Type::Vector2),
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "place2d_example",

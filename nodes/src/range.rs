@@ -74,7 +74,7 @@ static SPEC: NodeSpec = NodeSpec {
         .uniform(),
     ],
     output: OutputType::Widest,
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "range_example",

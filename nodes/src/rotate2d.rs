@@ -45,7 +45,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("degrees"),
     ],
     output: OutputType::Exactly(Type::Vector2),
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "rotate2d_example",

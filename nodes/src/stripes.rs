@@ -68,7 +68,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::hard(0.0, 1.0)),
     ],
     output: OutputType::Exactly(Type::Float),
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "stripes_example",

@@ -11,7 +11,7 @@
 //!   the function is finished)
 
 use super::{
-    Constant, Function, FunctionId, Inst, Module, Op, Parameter, Table, Type, Value,
+    Constant, Function, FunctionId, Inst, Module, Numbers, Op, Parameter, Table, Type, Value,
     op::fold_constants,
 };
 use rustc_hash::FxHashMap;
@@ -358,10 +358,17 @@ impl Builder {
 impl Module {
     /// A further table; returns its index for [`Builder::load`]. Equal data is stored once.
     pub fn table(&mut self, name: impl Into<String>, data: Vec<f32>) -> u32 {
-        assert!(!data.is_empty(), "a table has numbers");
-        if let Some(same) = self.tables.iter().position(|t| t.data == data) {
+        let name = name.into();
+        let same = |t: &Table| t.name == name && *t.data == *data;
+        if let Some(same) = self.tables.iter().position(same) {
             return same as u32;
         }
+        self.push_table(name, data.into())
+    }
+
+    /// A further table, whatever others hold.
+    pub fn push_table(&mut self, name: impl Into<String>, data: Numbers) -> u32 {
+        assert!(!data.is_empty(), "a table has numbers");
         self.tables.push(Table { name: name.into(), data });
         self.tables.len() as u32 - 1
     }
@@ -414,7 +421,8 @@ fn without_dead_code(function: Function) -> Function {
 }
 
 impl Module {
-    /// The module without the functions that the entry does not reach, each name used once.
+    /// The module without the functions that the entry does not reach and the tables that they do
+    /// not read, each name used once.
     pub fn pruned(mut self) -> Self {
         let mut live = vec![false; self.functions.len()];
         if let Some(entry) = live.last_mut() {
@@ -440,6 +448,7 @@ impl Module {
             index += 1;
             live[index - 1]
         });
+        self.prune_tables();
         let mut taken: FxHashMap<String, u32> = FxHashMap::default();
         // The entry keeps its name.
         for function in self.functions.iter_mut().rev() {
@@ -455,6 +464,41 @@ impl Module {
             }
         }
         self
+    }
+
+    fn prune_tables(&mut self) {
+        let loads = |functions: &[Function]| -> Vec<u32> {
+            (functions.iter().flat_map(|f| &f.insts))
+                .filter_map(|inst| match inst {
+                    Inst::Load(table, _) => Some(*table),
+                    _ => None,
+                })
+                .collect()
+        };
+        let mut moved = vec![None; self.tables.len()];
+        let mut read = loads(&self.functions);
+        read.sort_unstable();
+        read.dedup();
+        for (place, &table) in (0u32..).zip(&read) {
+            moved[table as usize] = Some(place);
+        }
+        let mut taken: FxHashMap<String, u32> = FxHashMap::default();
+        let tables = std::mem::take(&mut self.tables);
+        self.tables = (tables.into_iter().zip(&moved))
+            .filter_map(|(table, place)| place.is_some().then_some(table))
+            .collect();
+        for table in &mut self.tables {
+            let count = taken.entry(table.name.clone()).or_default();
+            *count += 1;
+            if *count > 1 {
+                table.name = format!("{}_{count}", table.name);
+            }
+        }
+        for inst in self.functions.iter_mut().flat_map(|f| &mut f.insts) {
+            if let Inst::Load(table, _) = inst {
+                *table = moved[*table as usize].expect("a table that is read");
+            }
+        }
     }
 }
 

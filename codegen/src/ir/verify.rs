@@ -333,8 +333,8 @@ mod tests {
                 |m| m.functions[1].name = "body".into(),
                 "two functions are called \"body\"",
             ),
-            (|m| m.tables[0].data.clear(), "is empty"),
-            (|m| m.tables[0].data[0] = f32::NAN, "holds NaN"),
+            (|m| m.tables[0].data = Vec::new().into(), "is empty"),
+            (|m| m.tables[0].data = vec![f32::NAN].into(), "holds NaN"),
             (
                 |m| m.functions[0].params[1].name = "index".into(),
                 "two parameters",

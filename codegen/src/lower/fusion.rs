@@ -8,9 +8,10 @@
 use super::{Arguments, Bundle, Compiler, Lower, Options};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
-use crate::moments::{Algebra, Demand, Mode, Sampled, Signal, Tabulated};
+use crate::moments::{Algebra, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
 use mipless_graph::{Node, NodeId, Source};
 use std::rc::Rc;
+use std::sync::{Arc, LazyLock};
 
 /// That a node is a function of one scalar signal alone.
 #[derive(Clone, Debug)]
@@ -38,15 +39,14 @@ impl<'a> Compiler<'a> {
             live: self.live.clone(),
             functions: Default::default(),
             fused: Default::default(),
-            inner: self.inner.clone(),
         }
     }
 }
 
 impl Lower<'_> {
-    /// Records what the node, just lowered, is a function of; its bundle by fusion, where that is
-    /// better than closing it alone.
-    pub(super) fn fuse(&mut self, index: usize, node: &Node) -> Option<Bundle> {
+    /// Records what the node, just lowered to `closed`, is a function of; its bundle by fusion,
+    /// where that is better than closing it alone.
+    pub(super) fn fuse(&mut self, index: usize, node: &Node, closed: &[Signal]) -> Option<Bundle> {
         if !self.algebra.mode.spreads() {
             return None;
         }
@@ -58,7 +58,7 @@ impl Lower<'_> {
         if !self.algebra.bent || before.bends == 0 || !before.fixed || !bounded {
             return None;
         }
-        Some(self.tabulated(index, node, before.entry, &before.signal))
+        Some(self.tabulated(index, closed, node, &before))
     }
 
     /// The one signal that all varying inputs of a node are functions of.
@@ -104,35 +104,26 @@ impl Lower<'_> {
         chain.map(|chain| Chain { fixed, ..chain })
     }
 
-    fn tabulated(&mut self, index: usize, node: &Node, entry: NodeId, signal: &Signal) -> Bundle {
+    fn tabulated(&mut self, index: usize, closed: &[Signal], node: &Node, chain: &Chain) -> Bundle {
         let compiler = self.compiler;
-        let components = node.ty.components();
+        let (entry, domain) = (chain.entry, chain.signal.range);
         let known = compiler.fused.borrow().get(&index).cloned();
-        let sampled = known.unwrap_or_else(|| {
-            let sampled = Rc::new(sample(compiler, index, entry, signal.range, components));
-            compiler.fused.borrow_mut().insert(index, Rc::clone(&sampled));
-            sampled
+        let samples = known.unwrap_or_else(|| {
+            let samples = sample(compiler, index, entry, domain, closed.len());
+            compiler.fused.borrow_mut().insert(index, Arc::clone(&samples));
+            samples
         });
         let name = super::identifier(&node.name);
         let function = self.function(&format!("fused {index}"), |module| {
             function(compiler, module, index, entry)
         });
-        let demand = Demand {
-            spread: compiler.inner[index] || compiler.options.moments,
-            skew: self.algebra.mode == Mode::Quad,
-        };
-        (0..components)
-            .map(|i| {
-                let component = if components > 1 { format!("{name}_{i}") } else { name.clone() };
-                let table = Tabulated::bake(
-                    self.module,
-                    &component,
-                    function.clone(),
-                    i,
-                    &sampled[i],
-                    demand,
-                );
-                self.algebra.transfer(signal, &table)
+        (closed.iter().enumerate())
+            .map(|(i, signal)| {
+                let name = if closed.len() > 1 { format!("{name}_{i}") } else { name.clone() };
+                let of = (function.clone(), i);
+                let bounds = (domain, signal.range);
+                let table = Tabulated::new(self.module, &name, of, bounds, &samples);
+                self.algebra.transfer(&chain.signal, &table)
             })
             .collect()
     }
@@ -181,22 +172,24 @@ fn function(compiler: &Compiler<'_>, module: &mut Module, index: usize, entry: N
     b.finish(module)
 }
 
-/// The region's values over the range of the entry.
+/// The region's values over a domain, to be computed when a table of them is read.
 fn sample(
     compiler: &Compiler<'_>,
     index: usize,
     entry: NodeId,
-    range: [f32; 2],
+    domain: [f32; 2],
     components: usize,
-) -> Vec<Sampled> {
+) -> Samples {
     let mut module = Module::default();
     let alone = compiler.with_options(compiler.options);
     function(&alone, &mut module, index, entry);
-    let points = Sampled::points(range);
-    let mut values = Vec::new();
-    let evaluator = Evaluator::<f64>::new(&module);
-    let inputs = [Input::Floats(&points)];
-    evaluator.evaluate(&mut Scratch::new(), &inputs, points.len(), &mut values);
-    values.truncate(components);
-    values.into_iter().map(|values| Sampled::new(range, values)).collect()
+    Arc::new(LazyLock::new(Box::new(move || {
+        let points = sample_points(domain);
+        let mut values = Vec::new();
+        let evaluator = Evaluator::<f64>::new(&module);
+        let inputs = [Input::Floats(&points)];
+        evaluator.evaluate(&mut Scratch::new(), &inputs, points.len(), &mut values);
+        values.truncate(components);
+        values.into_iter().map(Sampled::new).collect()
+    })))
 }

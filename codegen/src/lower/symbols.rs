@@ -28,19 +28,6 @@ pub(super) fn live(graph: &Graph) -> Vec<u32> {
     uses
 }
 
-/// Whether a live node reads each node's output, and not outputs alone.
-pub(super) fn inner(graph: &Graph, live: &[u32]) -> Vec<bool> {
-    let mut inner = vec![false; graph.nodes.len()];
-    for (node, _) in graph.nodes.iter().zip(live).filter(|&(_, &uses)| uses > 0) {
-        for input in &node.inputs {
-            if let Source::Node(id) = input.source {
-                inner[id.index()] = true;
-            }
-        }
-    }
-    inner
-}
-
 /// How many live nodes carry each symbol. A symbol is its own only while several do: from the fork
 /// where it was born to where its paths have met.
 #[derive(Debug, Default)]

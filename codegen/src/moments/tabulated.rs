@@ -6,7 +6,8 @@
 //! is stored as σᵏ E[T⁽ᵏ⁾] = E[T Heₖ(z)], the distortion as its root.
 
 use super::{Gaussian, Moments, Transfer};
-use crate::ir::{Builder, FunctionRef, Module, Value};
+use crate::ir::{Builder, FunctionRef, Module, Numbers, Value};
+use std::sync::{Arc, LazyLock};
 
 /// σ₀, in domains.
 const FINEST: f64 = 0.004;
@@ -21,85 +22,81 @@ const REACH: f64 = 4.5;
 /// A function sampled over a domain, ready to bake moments from.
 #[derive(Clone, Debug)]
 pub(crate) struct Sampled {
-    /// Where the domain begins and ends; beyond it the function is taken for constant.
-    pub(crate) domain: [f32; 2],
-    /// The values at the centres of [`SAMPLES`] cells of the domain.
-    values: Vec<f64>,
+    /// The values at the centres of [`SAMPLES`] cells of the domain, and their averages over 2, 4, …
+    /// cells.
+    mips: Vec<Vec<f64>>,
+}
+
+/// Where to sample a function over a domain; beyond it the function is taken for constant.
+pub(crate) fn sample_points(domain: [f32; 2]) -> Vec<f32> {
+    let width = f64::from(domain[1]) - f64::from(domain[0]);
+    (0..SAMPLES)
+        .map(|i| (f64::from(domain[0]) + width * (i as f64 + 0.5) / SAMPLES as f64) as f32)
+        .collect()
 }
 
 impl Sampled {
-    /// Where to sample a function over a domain.
-    pub(crate) fn points(domain: [f32; 2]) -> Vec<f32> {
-        let width = f64::from(domain[1]) - f64::from(domain[0]);
-        (0..SAMPLES)
-            .map(|i| (f64::from(domain[0]) + width * (i as f64 + 0.5) / SAMPLES as f64) as f32)
-            .collect()
-    }
-
-    /// From the values at [`Sampled::points`].
-    pub(crate) fn new(domain: [f32; 2], values: Vec<f64>) -> Self {
+    /// From the values at [`sample_points`].
+    pub(crate) fn new(values: Vec<f64>) -> Self {
         assert_eq!(values.len(), SAMPLES, "samples of a function");
-        Self { domain, values }
-    }
-
-    fn at(&self, index: i64) -> f64 {
-        self.values[index.clamp(0, SAMPLES as i64 - 1) as usize]
-    }
-
-    /// The least and largest value.
-    fn range(&self) -> [f32; 2] {
-        self.values.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &v| {
-            [low.min(v as f32), high.max(v as f32)]
-        })
-    }
-
-    /// Texels of a level: its grid covers the domain with spacing σ/2.
-    fn texels(level: usize) -> usize {
-        (2.0 / sigma(level)).ceil() as usize + 1
+        let mut mips = vec![values];
+        for _ in 0..LEVELS / 2 {
+            let finer = mips.last().expect("the samples");
+            mips.push(finer.chunks(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect());
+        }
+        Self { mips }
     }
 
     /// One moment's pyramid: all levels, finest first.
     fn pyramid(&self, moment: Moment) -> Vec<f32> {
-        let mut out = Vec::new();
-        for level in 0..LEVELS {
-            let sd = sigma(level) * SAMPLES as f64;
-            let reach = (REACH * sd).ceil() as i64;
-            let texels = Self::texels(level);
-            for texel in 0..texels {
-                // The centre in samples; sample i stands at i + ½.
-                let centre = texel as f64 / (texels - 1) as f64 * SAMPLES as f64 - 0.5;
-                let middle = centre.round() as i64;
-                let mut sums = [0.0; 5];
-                for i in middle - reach..=middle + reach {
-                    let z = (i as f64 - centre) / sd;
-                    let weight = (-0.5 * z * z).exp();
-                    let value = self.at(i);
-                    let hermite = [1.0, z, z * z - 1.0, z * (z * z - 3.0)];
-                    for (sum, h) in sums.iter_mut().zip(hermite) {
-                        *sum += weight * h * value;
-                    }
-                    sums[4] += weight;
-                }
-                let [mean, first, second, third] = [0, 1, 2, 3].map(|k| sums[k] / sums[4]);
-                out.push(match moment {
-                    Moment::Mean => mean,
-                    Moment::Slope => first,
-                    Moment::Curvature => second,
-                    Moment::Third => third,
-                    Moment::Distortion => {
-                        let mut rest = 0.0;
-                        for i in middle - reach..=middle + reach {
-                            let z = (i as f64 - centre) / sd;
-                            let residual = self.at(i) - mean - first * z;
-                            rest += (-0.5 * z * z).exp() * residual * residual;
-                        }
-                        (rest / sums[4]).sqrt()
-                    }
-                } as f32);
-            }
-        }
-        out
+        (0..LEVELS).flat_map(|level| self.level(level, moment)).collect()
     }
+
+    /// One level, from the samples that are 8 or 11 a σ.
+    fn level(&self, level: usize, moment: Moment) -> Vec<f32> {
+        let mip = level / 2;
+        let samples = &self.mips[mip];
+        // Averages over 2ᵐ samples have the variance of a box that the kernel need not add.
+        let cell = (1u64 << mip) as f64;
+        let wanted = sigma(level) * SAMPLES as f64 / cell;
+        let sd = (wanted * wanted - (1.0 - 1.0 / (cell * cell)) / 12.0).sqrt();
+        let reach = (REACH * sd).ceil() as i64;
+        let texels = texels(level);
+        let last = samples.len() as i64 - 1;
+        (0..texels)
+            .map(|texel| {
+                // Sample i stands at i + ½.
+                let centre = texel as f64 / (texels - 1) as f64 * samples.len() as f64 - 0.5;
+                let middle = centre.round() as i64;
+                let near = (middle - reach..=middle + reach).map(|i| {
+                    let z = (i as f64 - centre) / sd;
+                    let value = samples[i.clamp(0, last) as usize];
+                    (z, (-0.5 * z * z).exp(), value)
+                });
+                let average = |f: &dyn Fn(f64, f64) -> f64| {
+                    let (sum, total) = near
+                        .clone()
+                        .fold((0.0, 0.0), |(sum, total), (z, w, v)| (sum + w * f(z, v), total + w));
+                    sum / total
+                };
+                (match moment {
+                    Moment::Mean => average(&|_, v| v),
+                    Moment::Slope => average(&|z, v| z * v),
+                    Moment::Curvature => average(&|z, v| (z * z - 1.0) * v),
+                    Moment::Third => average(&|z, v| z * (z * z - 3.0) * v),
+                    Moment::Distortion => {
+                        let (mean, slope) = (average(&|_, v| v), average(&|z, v| z * v));
+                        average(&|z, v| (v - mean - slope * z).powi(2)).sqrt()
+                    }
+                }) as f32
+            })
+            .collect()
+    }
+}
+
+/// Texels of a level: its grid covers the domain with spacing σ/2.
+fn texels(level: usize) -> usize {
+    (2.0 / sigma(level)).ceil() as usize + 1
 }
 
 /// σ of a level, in domains.
@@ -116,16 +113,19 @@ enum Moment {
     Distortion,
 }
 
-/// Which moments of a tabulated function are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Demand {
-    /// Slope and distortion: something reads the result's spread.
-    pub(crate) spread: bool,
-    /// Derivatives for the second order and the third cumulant.
-    pub(crate) skew: bool,
-}
+const MOMENTS: [(Moment, &str); 5] = [
+    (Moment::Mean, "mean"),
+    (Moment::Slope, "slope"),
+    (Moment::Curvature, "curvature"),
+    (Moment::Third, "third"),
+    (Moment::Distortion, "distortion"),
+];
 
-/// A function of one number with baked moments.
+/// A function's values at [`sample_points`], one vector a component, computed once when first asked.
+pub(crate) type Samples = Arc<LazyLock<Vec<Sampled>, Box<dyn Fn() -> Vec<Sampled> + Send + Sync>>>;
+
+/// A function of one number with moments that are baked when their tables are first read; tables
+/// that nothing reads are pruned with the module.
 #[derive(Clone, Debug)]
 pub(crate) struct Tabulated {
     function: FunctionRef,
@@ -134,38 +134,31 @@ pub(crate) struct Tabulated {
     range: [f32; 2],
     /// The table of texel counts and offsets of the levels.
     levels: u32,
-    tables: [Option<u32>; 5],
+    tables: [u32; 5],
 }
 
 impl Tabulated {
-    /// Bakes what is demanded. `function` takes a number and gives the components.
-    pub(crate) fn bake(
+    /// `function` takes a number and gives the components; `range` bounds this one.
+    pub(crate) fn new(
         module: &mut Module,
         name: &str,
-        function: FunctionRef,
-        component: usize,
-        sampled: &Sampled,
-        demand: Demand,
+        (function, component): (FunctionRef, usize),
+        (domain, range): ([f32; 2], [f32; 2]),
+        samples: &Samples,
     ) -> Self {
         let mut layout = Vec::new();
-        let mut offset = 0;
+        let mut total = 0;
         for level in 0..LEVELS {
-            layout.extend([Sampled::texels(level) as f32, offset as f32]);
-            offset += Sampled::texels(level);
+            layout.extend([texels(level) as f32, total as f32]);
+            total += texels(level);
         }
         let levels = module.table("pyramid_levels", layout);
-        let mut table = |wanted: bool, moment: Moment, suffix: &str| {
-            wanted.then(|| module.table(format!("{name}_{suffix}"), sampled.pyramid(moment)))
-        };
-        let tables = [
-            table(true, Moment::Mean, "mean"),
-            table(demand.spread, Moment::Slope, "slope"),
-            table(demand.spread && demand.skew, Moment::Curvature, "curvature"),
-            table(demand.skew, Moment::Third, "third"),
-            table(demand.spread, Moment::Distortion, "distortion"),
-        ];
-        let range = sampled.range();
-        Self { function, component, domain: sampled.domain, range, levels, tables }
+        let tables = MOMENTS.map(|(moment, suffix)| {
+            let samples = Arc::clone(samples);
+            let bake = move || samples[component].pyramid(moment);
+            module.push_table(format!("{name}_{suffix}"), Numbers::lazy(total, bake))
+        });
+        Self { function, component, domain, range, levels, tables }
     }
 }
 
@@ -231,16 +224,16 @@ impl Tabulated {
         Place { texels, mix, below, share }
     }
 
-    /// The moment at the place, where its table exists.
-    fn read(&self, b: &mut Builder, place: &Place, moment: Moment) -> Option<Value> {
-        let table = self.tables[moment as usize]?;
+    /// The moment at the place.
+    fn read(&self, b: &mut Builder, place: &Place, moment: Moment) -> Value {
+        let table = self.tables[moment as usize];
         let [fine, coarse] = place.texels.map(|(index, share)| {
             let one = b.u32(1);
             let next = b.add_u(index, one);
             let (left, right) = (b.load(table, index), b.load(table, next));
             lerp(b, left, right, share)
         });
-        Some(lerp(b, fine, coarse, place.mix))
+        lerp(b, fine, coarse, place.mix)
     }
 }
 
@@ -257,8 +250,7 @@ impl Transfer for Tabulated {
 
     fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
         let place = self.place(b, x);
-        let zero = b.f32(0.0);
-        let read = |b: &mut Builder, moment| self.read(b, &place, moment).unwrap_or(zero);
+        let read = |b: &mut Builder, moment| self.read(b, &place, moment);
         let mean = read(b, Moment::Mean);
         let exact = self.value(b, x.mean);
         let near = lerp(b, exact, mean, place.share);

@@ -247,7 +247,7 @@ fn tables_become_one_buffer_and_loads_stay_inside() {
     );
     assert!(shader.source.contains("ramp_tables[2u + min(t1, 2u)]"));
     assert!(shader.source.contains("ramp_tables[4u]"));
-    assert_eq!(shader.tables.unwrap().data, [1.0, 2.0, 3.0, 4.0, 5.0]);
+    assert_eq!(shader.tables.unwrap().data(), [1.0, 2.0, 3.0, 4.0, 5.0]);
     assert!(!shader.source.contains("parameters"), "there are none");
 }
 

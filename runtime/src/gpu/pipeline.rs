@@ -64,7 +64,7 @@ impl Gpu {
         let tables = shader
             .tables
             .as_ref()
-            .map_or(&[][..], |tables| &tables.data);
+            .map_or_else(Vec::new, |tables| tables.data());
         let (pipeline, layout, parameters, tables) = self.checked(|| {
             let module = self
                 .device
@@ -91,7 +91,7 @@ impl Gpu {
                     cache: None,
                 });
             let parameters = self.filled(&parameters, wgpu::BufferUsages::UNIFORM);
-            let tables = self.filled(bytemuck::cast_slice(tables), wgpu::BufferUsages::STORAGE);
+            let tables = self.filled(bytemuck::cast_slice(&tables), wgpu::BufferUsages::STORAGE);
             (pipeline, layout, parameters, tables)
         })?;
         let chunk = AtomicUsize::new(super::render::FIRST_CHUNK);

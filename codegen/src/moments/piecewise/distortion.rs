@@ -8,8 +8,11 @@ use super::{Piecewise, segment::probability};
 use crate::ir::{Builder, Value};
 
 /// Nodes and weights of Gauss–Legendre on [0, 1], degree 5 and 11.
-const THREE: [(f32, f32); 3] =
-    [(0.112_701_665, 0.277_777_78), (0.5, 0.444_444_44), (0.887_298_35, 0.277_777_78)];
+const THREE: [(f32, f32); 3] = [
+    (0.112_701_665, 0.277_777_78),
+    (0.5, 0.444_444_44),
+    (0.887_298_35, 0.277_777_78),
+];
 const SIX: [(f32, f32); 6] = [
     (0.033_765_24, 0.085_662_25),
     (0.169_395_31, 0.180_380_79),
@@ -20,7 +23,13 @@ const SIX: [(f32, f32); 6] = [
 ];
 
 impl Piecewise {
-    pub(super) fn distortion(&self, b: &mut Builder, x: &Gaussian, mean: Value, alpha: Value) -> Value {
+    pub(super) fn distortion(
+        &self,
+        b: &mut Builder,
+        x: &Gaussian,
+        mean: Value,
+        alpha: Value,
+    ) -> Value {
         let zero = b.f32(0.0);
         if let [knot] = self.knots[..] {
             let distance = b.sub(x.mean, knot.at);
@@ -68,8 +77,8 @@ impl Piecewise {
             let f = b.mul(f, x.sd);
             let part = match (piece.checked_sub(1).map(|i| normals[i]), normals.get(piece)) {
                 (Some(from), Some(&to)) => {
-                    let height = self.smooth.get(piece - 1).copied();
-                    inner(b, &from, &to, e, f, height)
+                    let bump = self.bump_on(b, piece - 1, x);
+                    inner(b, &from, &to, e, f, bump)
                 }
                 (None, Some(to)) => {
                     // z from −∞ to −to.z.
@@ -109,10 +118,42 @@ fn closed(b: &mut Builder, p: Value, first: Value, second: Value, e: Value, f: V
     b.mul(p, total)
 }
 
-/// The part of a piece between two knots, with a bump of this height on it, if any.
-fn inner(b: &mut Builder, from: &Normal, to: &Normal, e: Value, f: Value, height: Option<Value>) -> Value {
+/// A bump on a piece: its height, and τ = at + gain · z. Standard scores of knots are limited, so τ
+/// does not follow from them.
+struct Bump {
+    height: Value,
+    at: Value,
+    gain: Value,
+}
+
+impl Piecewise {
+    /// The bump between knot `piece` and the next one, if there is one.
+    fn bump_on(&self, b: &mut Builder, piece: usize, x: &Gaussian) -> Option<Bump> {
+        let height = self.smooth.get(piece).copied().filter(|&h| !b.is_zero(h))?;
+        let (from, to) = (self.knots[piece].at, self.knots[piece + 1].at);
+        let width = b.sub(to, from);
+        let least = b.f32(1e-6);
+        let width = b.max(width, least);
+        let distance = b.sub(x.mean, from);
+        Some(Bump {
+            height,
+            at: b.div(distance, width),
+            gain: b.div(x.sd, width),
+        })
+    }
+}
+
+/// The part of a piece between two knots, with a bump on it, if any.
+fn inner(
+    b: &mut Builder,
+    from: &Normal,
+    to: &Normal,
+    e: Value,
+    f: Value,
+    bump: Option<Bump>,
+) -> Value {
     let (a, end) = (b.neg(from.z), b.neg(to.z));
-    let Some(height) = height.filter(|&h| !b.is_zero(h)) else {
+    let Some(Bump { height, at, gain }) = bump else {
         let p = probability(b, from, to);
         let first = b.sub(from.density, to.density);
         let (left, right) = (b.mul(a, from.density), b.mul(end, to.density));
@@ -130,14 +171,11 @@ fn inner(b: &mut Builder, from: &Normal, to: &Normal, e: Value, f: Value, height
     };
     // The density beyond ±4.5 adds nothing.
     let (low, high) = (b.clamp(a, -4.5, 4.5), b.clamp(end, -4.5, 4.5));
-    let width = b.sub(end, a);
-    let least = b.f32(1e-6);
-    let width = b.max(width, least);
     let one = b.f32(1.0);
-    let inverse = b.div(one, width);
     nodes(b, low, high, &SIX, |b, z, _| {
-        let t = b.sub(z, a);
-        let t = b.mul(t, inverse);
+        let t = b.mul(gain, z);
+        let t = b.add(at, t);
+        let t = b.clamp(t, 0.0, 1.0);
         let (back, twice) = (b.sub(one, t), b.add(t, t));
         let product = b.mul(t, back);
         let centre = b.sub(twice, one);

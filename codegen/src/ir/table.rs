@@ -1,0 +1,79 @@
+//! Tables of numbers, computed when they are first read: text is emitted without them.
+
+use std::fmt;
+use std::ops::Deref;
+use std::sync::{Arc, OnceLock};
+
+/// A table of numbers that [`super::Inst::Load`] reads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// A readable name, unique in the module.
+    pub name: String,
+    /// The numbers; at least one.
+    pub data: Numbers,
+}
+
+/// Numbers that may not have been computed yet; their count is known. Clones share them.
+#[derive(Clone)]
+pub struct Numbers {
+    len: usize,
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    data: OnceLock<Vec<f32>>,
+    compute: Option<Box<dyn Fn() -> Vec<f32> + Send + Sync>>,
+}
+
+impl Numbers {
+    /// `len` numbers that `compute` gives when they are first read.
+    pub fn lazy(len: usize, compute: impl Fn() -> Vec<f32> + Send + Sync + 'static) -> Self {
+        let compute: Box<dyn Fn() -> Vec<f32> + Send + Sync> = Box::new(compute);
+        let shared = Shared { data: OnceLock::new(), compute: Some(compute) };
+        Self { len, shared: Arc::new(shared) }
+    }
+
+    /// How many numbers; computes none.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+}
+
+impl From<Vec<f32>> for Numbers {
+    fn from(data: Vec<f32>) -> Self {
+        let len = data.len();
+        Self { len, shared: Arc::new(Shared { data: OnceLock::from(data), compute: None }) }
+    }
+}
+
+impl Deref for Numbers {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        self.shared.data.get_or_init(|| {
+            let data = self.shared.compute.as_ref().map(|compute| compute()).unwrap_or_default();
+            assert_eq!(data.len(), self.len, "numbers of a table");
+            data
+        })
+    }
+}
+
+impl PartialEq for Numbers {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.shared, &other.shared) || **self == **other
+    }
+}
+
+impl fmt::Debug for Numbers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.shared.data.get() {
+            Some(data) => data.fmt(f),
+            None => write!(f, "{} numbers to come", self.len),
+        }
+    }
+}
