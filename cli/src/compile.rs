@@ -170,7 +170,7 @@ impl<'a> Job<'a> {
             file(target.name(), target.extension(stage), bytes);
         }
         if let Some(tables) = &shader.tables {
-            let bytes = tables.data().into_iter().flat_map(f32::to_le_bytes).collect();
+            let bytes = tables.data().iter().flat_map(|x| x.to_le_bytes()).collect();
             file("tables", "tables.bin", bytes);
         }
         let manifest = Manifest::new(&shader, |name| {
