@@ -16,7 +16,7 @@ use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
 };
 use crate::moments::{Algebra, Mode, Samples, Signal, Symbol};
-use mipless_graph::{Checked, Graph, Literal, Node, NodeId, NodeSpec, Source, Stops, Type};
+use mipless_graph::{Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type};
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
 
@@ -68,8 +68,9 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         moments: options.moments,
     };
     let live = symbols::live(graph);
+    let crossed = symbols::crossed(graph);
     let (functions, fused) = (RefCell::default(), RefCell::default());
-    let compiler = Compiler { graph, catalogue, options, live, functions, fused };
+    let compiler = Compiler { graph, catalogue, options, live, crossed, functions, fused };
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
     Program { module: module.pruned(), interface }
@@ -86,6 +87,23 @@ fn identifier(name: &str) -> String {
     out
 }
 
+/// Inputs of which nothing is known but that they vary.
+struct Varying;
+
+impl InputView for Varying {
+    fn varies(&self, _: &str) -> bool {
+        true
+    }
+
+    fn flag(&self, _: &str) -> bool {
+        false
+    }
+
+    fn choice(&self, _: &str) -> &str {
+        ""
+    }
+}
+
 /// What all functions of a compilation share.
 struct Compiler<'a> {
     graph: &'a Graph,
@@ -93,6 +111,8 @@ struct Compiler<'a> {
     options: &'a Options,
     /// How many live edges read each node's output.
     live: Vec<u32>,
+    /// Whether components of each node's output are combined later.
+    crossed: Vec<bool>,
     /// The functions that nodes share, by their keys.
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
@@ -194,13 +214,39 @@ impl<'a> Lower<'a> {
 
     /// Lowers every live node.
     fn run(&mut self) {
+        let live = self.compiler.live.clone();
+        self.run_nodes(live);
+    }
+
+    /// Lowers the sources and what their inputs need, for their footprints alone.
+    fn run_sources(&mut self) {
         let graph = self.compiler.graph;
-        let mut uses = self.compiler.live.clone();
-        for (index, node) in graph.nodes.iter().enumerate() {
-            if self.compiler.live[index] == 0 {
+        let mut uses = vec![0; graph.nodes.len()];
+        for (index, node) in graph.nodes.iter().enumerate().rev() {
+            let live = self.compiler.live[index] > 0;
+            // Whatever its inputs are, a source is Gaussian by itself.
+            let source = matches!((node.spec.class)(&Varying), Behaviour::Gaussian { .. });
+            if uses[index] == 0 && !(live && source) {
                 continue;
             }
-            let forks = self.compiler.live[index] > 1;
+            uses[index] = uses[index].max(1);
+            for input in &node.inputs {
+                if let Source::Node(id) = input.source {
+                    uses[id.index()] += 1;
+                }
+            }
+        }
+        self.run_nodes(uses);
+    }
+
+    /// Lowers the nodes that something uses, `uses` times each.
+    fn run_nodes(&mut self, mut uses: Vec<u32>) {
+        let graph = self.compiler.graph;
+        for (index, node) in graph.nodes.iter().enumerate() {
+            if uses[index] == 0 {
+                continue;
+            }
+            let forks = uses[index] > 1;
             self.algebra.shares = forks;
             let kept = forks.then(|| self.algebra.next_symbol());
             let definition = &self.compiler.catalogue[node.definition];
@@ -226,7 +272,8 @@ impl<'a> Lower<'a> {
                 }
             }
             let b = &mut self.algebra.b;
-            self.carriers.retire(b, &mut bundle, kept.unwrap_or(Symbol(u32::MAX)));
+            let kept = kept.unwrap_or(Symbol(u32::MAX));
+            self.carriers.retire(b, &mut bundle, kept, self.compiler.crossed[index]);
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {

@@ -14,7 +14,9 @@ use super::{
     Constant, Function, FunctionId, Inst, Module, Numbers, Op, Parameter, Table, Type, Value,
     op::fold_constants,
 };
-use rustc_hash::FxHashMap;
+use hashbrown::{HashTable, hash_table::Entry};
+use rustc_hash::{FxBuildHasher, FxHashMap};
+use std::hash::BuildHasher;
 
 /// A finished function of a module, as a callee.
 #[derive(Clone, Debug)]
@@ -29,7 +31,8 @@ pub struct FunctionRef {
 #[derive(Debug)]
 pub struct Builder {
     function: Function,
-    cons: FxHashMap<Inst, Value>,
+    /// The definitions by their hash: equal instructions are found, not stored twice.
+    cons: HashTable<u32>,
 }
 
 impl Builder {
@@ -45,7 +48,7 @@ impl Builder {
                 names: FxHashMap::default(),
                 results: Vec::new(),
             },
-            cons: FxHashMap::default(),
+            cons: HashTable::new(),
         }
     }
 
@@ -97,14 +100,24 @@ impl Builder {
     }
 
     fn push(&mut self, inst: Inst, ty: Type) -> Value {
-        if let Some(&value) = self.cons.get(&inst) {
-            return value;
+        let insts = &mut self.function.insts;
+        let hash = |inst: &Inst| FxBuildHasher.hash_one(inst);
+        let of = hash(&inst);
+        let entry = self.cons.entry(
+            of,
+            |&known| insts[known as usize] == inst,
+            |&known| hash(&insts[known as usize]),
+        );
+        match entry {
+            Entry::Occupied(known) => Value(*known.get()),
+            Entry::Vacant(place) => {
+                let value = insts.len() as u32;
+                place.insert(value);
+                insts.push(inst);
+                self.function.types.push(ty);
+                Value(value)
+            }
         }
-        let value = Value(self.function.insts.len() as u32);
-        self.cons.insert(inst.clone(), value);
-        self.function.insts.push(inst);
-        self.function.types.push(ty);
-        value
     }
 
     fn constant(&mut self, ty: Type, bits: u32) -> Value {

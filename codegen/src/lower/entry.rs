@@ -11,16 +11,16 @@ const LARGEST_FOOTPRINT: f32 = 1e9;
 pub(super) fn build(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
     let options = compiler.options;
     let graph = |module: &mut Module, mode, suffix: &str| {
-        graph_function(compiler, module, mode, &format!("{name}{suffix}"))
+        graph_function(compiler, module, mode, suffix)
     };
     match options.method {
-        Method::Point => entry_over(compiler, module, name, |m| graph(m, Mode::Point, "_point").0),
-        Method::Naive => entry_over(compiler, module, name, |m| graph(m, Mode::Naive, "_naive").0),
+        Method::Point => entry_over(compiler, module, name, |m| graph(m, Mode::Point, "point").0),
+        Method::Naive => entry_over(compiler, module, name, |m| graph(m, Mode::Naive, "naive").0),
         Method::Ensemble => {
-            entry_over(compiler, module, name, |m| graph(m, Mode::Ensemble, "_ensemble").0);
+            entry_over(compiler, module, name, |m| graph(m, Mode::Ensemble, "ensemble").0);
         }
-        Method::Local => entry_over(compiler, module, name, |m| graph(m, Mode::Local, "_local").0),
-        Method::Quad => entry_over(compiler, module, name, |m| graph(m, Mode::Quad, "_quad").0),
+        Method::Local => entry_over(compiler, module, name, |m| graph(m, Mode::Local, "local").0),
+        Method::Quad => entry_over(compiler, module, name, |m| graph(m, Mode::Quad, "quad").0),
         Method::Auto => auto(compiler, module, name),
         Method::Supersample(samples) => sampling::supersample(compiler, module, name, samples),
         Method::Split(k) => sampling::split(compiler, module, name, k),
@@ -62,7 +62,7 @@ pub(super) fn footprint_function(
 ) -> Option<FunctionRef> {
     let doc = "What the footprint is to the sources, in their wavelengths.";
     let mut lower = Lower::new(compiler, module, Builder::new(name, doc), Mode::Local);
-    lower.run();
+    lower.run_sources();
     let footprints = std::mem::take(&mut lower.footprints);
     let mut b = lower.algebra.b;
     if footprints.is_empty() {
@@ -138,9 +138,9 @@ pub(super) fn finite(b: &mut Builder, arguments: &Arguments) -> Vec<Value> {
 /// `quad` where a source's footprint lies between 0.02 and 0.6 wavelengths and something that is
 /// not linear follows, else `local`: a branch between two functions.
 fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
-    let (local, nonlinear) = graph_function(compiler, module, Mode::Local, &format!("{name}_local"));
+    let (local, nonlinear) = graph_function(compiler, module, Mode::Local, "local");
     let band = nonlinear.then(|| {
-        footprint_function(compiler, module, &format!("{name}_bends"), |b, footprints| {
+        footprint_function(compiler, module, "bends", |b, footprints| {
             let (low, high) = (b.f32(0.02), b.f32(0.6));
             let mut any = b.bool(false);
             for &footprint in footprints {
@@ -155,10 +155,10 @@ fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
     let Some(Some(band)) = band else {
         return entry_over(compiler, module, name, |_| local);
     };
-    let (quad, _) = graph_function(compiler, module, Mode::Quad, &format!("{name}_quad"));
+    let (quad, _) = graph_function(compiler, module, Mode::Quad, "quad");
     let mut branches = Vec::new();
     for (function, suffix) in [(&local, "by_local"), (&quad, "by_quad")] {
-        branches.push(branch(compiler, module, function, &format!("{name}_{suffix}")));
+        branches.push(branch(compiler, module, function, suffix));
     }
     let mut b = Builder::new(name, "The texture over a footprint.");
     let arguments = Arguments::declare(&mut b, compiler.graph);

@@ -37,6 +37,7 @@ impl<'a> Compiler<'a> {
             catalogue: self.catalogue,
             options,
             live: self.live.clone(),
+            crossed: self.crossed.clone(),
             functions: Default::default(),
             fused: Default::default(),
         }

@@ -13,11 +13,11 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     // Variances of the point function are 0 and are not asked for.
     let options = Options { moments: false, ..*compiler.options };
     let plain = compiler.with_options(&options);
-    let (point, _) = graph_function(&plain, module, Mode::Point, &format!("{name}_point"));
+    let (point, _) = graph_function(&plain, module, Mode::Point, "point");
     let outputs = point.results.len();
     let state_length = if moments { 2 * outputs } else { outputs };
 
-    let mut b = Builder::new(format!("{name}_sample"), "One more sample.");
+    let mut b = Builder::new("sample", "One more sample.");
     let index = b.param("index", Scalar::U32);
     let state: Vec<Value> = (0..state_length).map(|i| b.param_f32(format!("state_{i}"))).collect();
     let (shift_x, shift_y) = (b.param("shift_x", Scalar::U32), b.param("shift_y", Scalar::U32));
@@ -170,8 +170,8 @@ fn rule(k: u32) -> (Vec<[f32; 3]>, f32, f32) {
 pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k: u32) {
     let (nodes, largest, scatter) = rule(k);
     let s = compiler.options.filter.sd();
-    let (quad, _) = graph_function(compiler, module, Mode::Quad, &format!("{name}_quad"));
-    let size = footprint_function(compiler, module, &format!("{name}_size"), |b, footprints| {
+    let (quad, _) = graph_function(compiler, module, Mode::Quad, "quad");
+    let size = footprint_function(compiler, module, "size", |b, footprints| {
         let mut most = footprints[0];
         for &footprint in &footprints[1..] {
             most = b.max(most, footprint);
@@ -187,11 +187,11 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
         total += weight;
         rows.extend([*x, *y, *weight, weight / total]);
     }
-    let table = module.table(format!("{name}_nodes"), rows);
+    let table = module.table("split_nodes", rows);
 
     // The state: running weighted means, then the weighted sums of squared deviations and of
     // variances (West 1979): no difference of second moments.
-    let mut b = Builder::new(format!("{name}_part"), "One more part of the footprint.");
+    let mut b = Builder::new("part", "One more part of the footprint.");
     let index = b.param("index", Scalar::U32);
     let length = if moments { 2 * outputs } else { outputs };
     let state: Vec<Value> = (0..length).map(|i| b.param_f32(format!("state_{i}"))).collect();

@@ -3,7 +3,7 @@
 use super::Bundle;
 use crate::ir::Builder;
 use crate::moments::Symbol;
-use mipless_graph::{Graph, Source};
+use mipless_graph::{Graph, OutputType, Source};
 use rustc_hash::FxHashMap;
 
 /// A signal carries at most this many symbols; the oldest go private first, so that a graph of
@@ -26,6 +26,21 @@ pub(super) fn live(graph: &Graph) -> Vec<u32> {
         }
     }
     uses
+}
+
+/// Whether something that follows each node combines different components of it, so that what they
+/// share matters; a node whose inputs and output are all of one polymorphic type does not.
+pub(super) fn crossed(graph: &Graph) -> Vec<bool> {
+    let mut crossed = vec![false; graph.nodes.len()];
+    for (index, node) in graph.nodes.iter().enumerate().rev() {
+        let componentwise = node.spec.output == OutputType::Widest;
+        for input in &node.inputs {
+            if let Source::Node(id) = input.source {
+                crossed[id.index()] |= crossed[index] || !componentwise;
+            }
+        }
+    }
+    crossed
 }
 
 /// How many live nodes carry each symbol. A symbol is its own only while several do: from the fork
@@ -58,13 +73,20 @@ impl Carriers {
         }
     }
 
-    /// Folds into private variance what only this bundle carries (and only one signal of it), but
-    /// for the symbols from `kept` on, and whatever exceeds the limit.
-    pub(super) fn retire(&mut self, b: &mut Builder, bundle: &mut Bundle, kept: Symbol) {
+    /// Folds into private variance what only this bundle carries (and, where its components are
+    /// `crossed` later, only one of them), but for the symbols from `kept` on, and whatever exceeds
+    /// the limit.
+    pub(super) fn retire(
+        &mut self,
+        b: &mut Builder,
+        bundle: &mut Bundle,
+        kept: Symbol,
+        crossed: bool,
+    ) {
         for symbol in symbols(bundle) {
             let only = self.counts.get(&symbol) == Some(&1);
             let holders = bundle.iter().filter(|s| s.coefficient(symbol).is_some()).count();
-            if only && holders == 1 && symbol < kept {
+            if only && (holders == 1 || !crossed) && symbol < kept {
                 for signal in bundle.iter_mut() {
                     signal.retire(b, symbol);
                 }
