@@ -42,7 +42,11 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
 
 /// The catalogue by category.
 fn list(catalogue: &[NodeDef]) -> String {
-    let width = catalogue.iter().map(|def| def.spec.name.len()).max().unwrap_or(0);
+    let width = catalogue
+        .iter()
+        .map(|def| def.spec.name.len())
+        .max()
+        .unwrap_or(0);
     let mut categories: Vec<_> = catalogue.iter().map(|def| def.spec.category).collect();
     categories.sort();
     categories.dedup();
@@ -50,7 +54,11 @@ fn list(catalogue: &[NodeDef]) -> String {
     for (index, category) in categories.iter().enumerate() {
         let gap = if index == 0 { "" } else { "\n" };
         writeln!(text, "{gap}{}", category.name()).expect("a string takes everything");
-        for spec in catalogue.iter().map(|def| def.spec).filter(|s| s.category == *category) {
+        for spec in catalogue
+            .iter()
+            .map(|def| def.spec)
+            .filter(|s| s.category == *category)
+        {
             let (name, summary) = (spec.name, spec.summary);
             writeln!(text, "  {name:width$}  {summary}").expect("a string takes everything");
         }
@@ -63,17 +71,23 @@ fn find<'a>(catalogue: &'a [NodeDef], name: &str) -> Result<&'a NodeDef, Mistake
     if let Some(definition) = catalogue.iter().find(|def| def.spec.name == name) {
         return Ok(definition);
     }
-    let known = |def: &'a NodeDef| {
-        std::iter::once(def.spec.name).chain(def.spec.aliases.iter().copied())
-    };
+    let known =
+        |def: &'a NodeDef| std::iter::once(def.spec.name).chain(def.spec.aliases.iter().copied());
     let near = suggest(name, catalogue.iter().flat_map(known));
     let owner = near.and_then(|near| catalogue.iter().find(|def| known(def).any(|n| n == near)));
     let help = match (near, owner) {
         (Some(near), Some(owner)) if near != owner.spec.name => {
-            format!("did you mean `{}`, also known as `{near}`?", owner.spec.name)
+            format!(
+                "did you mean `{}`, also known as `{near}`?",
+                owner.spec.name
+            )
         }
         (Some(near), _) => format!("did you mean `{near}`?"),
         _ => "`mipless nodes` lists all".to_owned(),
     };
-    Err(Mistake::usage("unknown-node", format!("there is no node type `{name}`")).help(help))
+    Err(Mistake::usage(
+        "unknown-node-type",
+        format!("there is no node type `{name}`"),
+    )
+    .help(help))
 }

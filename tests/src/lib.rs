@@ -1,1 +1,54 @@
-//! The test suite: agreement, statistics, snapshots, properties, tidy.
+//! What the suites share: the graphs that every suite runs over, the methods, random numbers that
+//! are the same in every run, and all tolerances.
+//!
+//! | suite | holds |
+//! |---|---|
+//! | `agreement` | one program gives the same numbers in f32, in f64 and on a graphics device |
+//! | `shaders` | every shader that can be emitted is valid, and translates to every target |
+//! | `snapshots` | the IR and the WGSL of every graph, and that compilation is deterministic |
+//! | `stability` | no footprint, however extreme, gives anything but a finite number in range |
+//! | `properties` | random graphs and mutilated documents |
+//! | `statistics` | what the noises claim of themselves, as hypothesis tests |
+//! | `tidy` | the order of the house: arrows, generated files, names |
+
+pub mod case;
+pub mod generated;
+pub mod random;
+pub mod random_graph;
+pub mod tolerance;
+
+use mipless::Method;
+use std::path::PathBuf;
+
+/// The root of the workspace.
+pub fn root() -> PathBuf {
+    let tests = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().expect("the suite lies in the workspace").to_owned()
+}
+
+/// Every kind of method, the ones with a number at the least that shows what they do.
+pub const METHODS: [Method; 8] = [
+    Method::Point,
+    Method::Naive,
+    Method::Ensemble,
+    Method::Local,
+    Method::Quad,
+    Method::Auto,
+    Method::Split(4),
+    Method::Supersample(16),
+];
+
+/// A method's name without characters that file names and test filters stumble over.
+pub fn name_of(method: Method) -> String {
+    method.to_string().replace(':', "_")
+}
+
+/// Whether an environment variable asks for something: it is set, and neither empty nor 0.
+pub fn asked(variable: &str) -> bool {
+    std::env::var(variable).is_ok_and(|value| !value.is_empty() && value != "0")
+}
+
+/// How many random cases a test tries: `usual`, or ten times as many where `MIPLESS_LONG` is set.
+pub fn cases(usual: u32) -> u32 {
+    if asked("MIPLESS_LONG") { 10 * usual } else { usual }
+}

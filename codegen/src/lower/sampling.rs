@@ -1,6 +1,6 @@
 //! Methods that evaluate the graph several times in a pixel: a fold over one function of it.
 
-use super::entry::{finish, finite, footprint_function, graph_function};
+use super::entry::{finish, finite, footprint_function, graph_function, guarded};
 use super::{Arguments, Compiler, Options, PixelFilter};
 use crate::ir::{Builder, Module, Type as Scalar, Value};
 use crate::moments::Mode;
@@ -67,10 +67,12 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     let names: Vec<String> =
         module.function(point.id).results.iter().map(|(name, _)| name.clone()).collect();
     for (name, &value) in names.iter().zip(&state) {
+        let value = guarded(&mut b, value);
         b.result(name.clone(), value);
     }
     for (name, &sum) in names.iter().zip(&state[outputs.min(state.len())..]) {
         let variance = b.scale(sum, 1.0 / (samples.max(2) - 1) as f32);
+        let variance = guarded(&mut b, variance);
         b.result(format!("{name}_variance"), variance);
     }
     b.finish(module);

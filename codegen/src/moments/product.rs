@@ -8,7 +8,9 @@ impl Algebra {
     /// Exact in mean, variance and covariance with Gaussians, for Gaussian operands.
     pub fn product(&mut self, x: &Signal, y: &Signal) -> Signal {
         let b = &mut self.b;
-        if x.is_certain(b) {
+        // Where nothing spreads, a position is certain as well: it keeps its cell.
+        let keeps = x.cell.is_some() && y.is_certain(b);
+        if x.is_certain(b) && !keeps {
             let by = x.flat_mean(b);
             return y.scale(b, by);
         }

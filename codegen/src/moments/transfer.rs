@@ -94,24 +94,26 @@ impl Algebra {
             }
         }
         // The second Hermite coefficient squared: v² E[T″]²/2, of which the second order carries
-        // |g|⁴ E[T″]²/2.
-        let bend = b.square(m.curvature);
-        let bend = b.scale(bend, 0.5);
-        let whole = b.square(variance);
-        let carried = if self.mode == Mode::Quad { b.square(linear) } else { b.f32(0.0) };
+        // |g|⁴ E[T″]²/2. A footprint's fourth power overflows: the curvature goes to each factor.
         let zero = b.f32(0.0);
+        let carries = self.mode == Mode::Quad;
         if let Some(symbol) = x.hermite {
-            let left = b.sub(whole, carried);
-            let left = b.max(left, zero);
-            let left = b.sqrt(left);
+            let left = if carries {
+                let sum = b.add(variance, linear);
+                let (sum, rest) = (b.sqrt(sum), b.sqrt(other));
+                b.mul(sum, rest)
+            } else {
+                variance
+            };
             let coefficient = b.mul(m.curvature, left);
             let coefficient = b.scale(coefficient, std::f32::consts::FRAC_1_SQRT_2);
             out.push_shared(symbol, coefficient);
-            let second = b.mul(bend, whole);
-            distortion = b.sub(distortion, second);
-            distortion = b.max(distortion, zero);
-        } else if self.mode == Mode::Quad {
-            let second = b.mul(bend, carried);
+        }
+        let explained = if x.hermite.is_some() { variance } else { linear };
+        if x.hermite.is_some() || carries {
+            let second = b.mul(m.curvature, explained);
+            let second = b.square(second);
+            let second = b.scale(second, 0.5);
             distortion = b.sub(distortion, second);
             distortion = b.max(distortion, zero);
         }

@@ -58,6 +58,9 @@ struct Clock {
     readback: wgpu::Buffer,
 }
 
+/// How long another thread may take to deliver a message that it has already received.
+const DELIVERY: Duration = Duration::from_secs(10);
+
 impl Gpu {
     /// Renders all results of a pipeline over a view. Pixels of the background are 0 in every
     /// channel; [`View::present`] puts the background there.
@@ -258,7 +261,9 @@ impl Gpu {
             });
         })?;
         self.wait()?;
-        match receiver.try_recv() {
+        // Another thread that waits may have taken the message over: it delivers it when its own
+        // wait ends.
+        match receiver.recv_timeout(DELIVERY) {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(GpuError::Device(error.to_string())),
             Err(_) => return Err(GpuError::Device("a buffer was not mapped".into())),

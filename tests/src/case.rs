@@ -1,0 +1,69 @@
+//! The graphs that every suite runs over: those of `graphs/` and the example of every node.
+
+use crate::root;
+use mipless::Texture;
+use std::fs;
+
+/// One graph.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The name of its file without extension, or `example_` and the name of the node.
+    pub name: String,
+    /// The JSON text.
+    pub text: String,
+    /// The graph, checked.
+    pub texture: Texture,
+}
+
+impl Case {
+    /// Loads a graph.
+    ///
+    /// # Panics
+    /// If the graph has mistakes.
+    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
+        let (name, text) = (name.into(), text.into());
+        let texture = Texture::from_json(&text).unwrap_or_else(|mistakes| {
+            let mistakes: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+            panic!("{name} has mistakes:\n{}", mistakes.join("\n"))
+        });
+        Self { name, text, texture }
+    }
+}
+
+/// The graphs of `graphs/`, by name.
+///
+/// # Panics
+/// If one cannot be read or has mistakes.
+pub fn graphs() -> Vec<Case> {
+    let folder = root().join("graphs");
+    let mut files: Vec<_> = fs::read_dir(&folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .map(|entry| entry.expect("an entry of graphs/").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .collect();
+    files.sort();
+    (files.iter())
+        .map(|path| {
+            let name = path.file_stem().expect("a name").to_string_lossy();
+            let text = fs::read_to_string(path).expect("a readable graph");
+            Case::new(name, text)
+        })
+        .collect()
+}
+
+/// The examples of the reference pages, in the order of the catalogue.
+///
+/// # Panics
+/// If one has mistakes.
+pub fn examples() -> Vec<Case> {
+    let nodes = mipless::catalogue().iter();
+    nodes.map(|def| Case::new(format!("example_{}", def.spec.name), def.spec.example)).collect()
+}
+
+/// All graphs, then all examples.
+///
+/// # Panics
+/// If one cannot be read or has mistakes.
+pub fn all() -> Vec<Case> {
+    graphs().into_iter().chain(examples()).collect()
+}

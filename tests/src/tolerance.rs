@@ -1,0 +1,61 @@
+//! Every tolerance of the suites, with its reason.
+
+/// The difference, relative to max(1, |x|), up to which a pixel in f32 *agrees* with its f64 oracle:
+/// about 80 roundings of a number near 1, which is what a graph of some hundred operations makes.
+/// Pixels beyond it sit on an edge or in a cancellation, where f32 carries no information.
+pub const F32_AGREES: f64 = 1e-5;
+
+/// The share of pixels that need not agree with the oracle: those that an edge runs through.
+pub const LEFT_OUT: f64 = 0.01;
+
+/// The same for samples of the pixel: towards the horizon a pixel is a hundred units of texture space
+/// long, and the place of a sample in it has a rounding of 4e-6 units, which is no error of the mean.
+pub const LEFT_OUT_OF_SAMPLES: f64 = 0.05;
+
+/// The largest difference between a device and the CPU over the pixels that agree with the oracle,
+/// relative to max(1, |x|). WGSL lets a device be off by 2.5 units in the last place in a division,
+/// by 3 + 2|x| in exp and by 2⁻¹¹ absolutely in sin and cos; the devices met so far stay a hundred
+/// times below that.
+pub const DEVICE: f64 = 2e-4;
+
+/// How far a value may leave the range of its colour map, relative to max(1, |bound|): the
+/// roundings of the sum over the map's segments.
+pub const RANGE: f64 = 2e-5;
+
+/// The difference between a filtered value and the point value at a vanishing footprint, relative
+/// to max(1, |x|). Closed forms switch to their limits below σ ≈ 1e-6.
+pub const VANISHING: f64 = 1e-4;
+
+/// The level of significance of the hypothesis tests of one suite together; each test of `n` gets
+/// 1/n of it (Bonferroni). With fixed random numbers a suite passes always or never.
+pub const SIGNIFICANCE: f64 = 1e-3;
+
+/// The share of the observed range of an output by which its far-field mean may be off beyond the
+/// statistical error of the samples and beyond what the check predicts: the distance of the noises'
+/// distributions from a Gaussian (0.0046 of each jump, four jumps in a ramp).
+pub const FAR_FIELD: f64 = 0.02;
+
+/// The same for graphs with waves of position. Their chains are closed node by node, and the far
+/// field of a sine is an arcsine distribution, whose CDF is up to 0.097 from the normal one of its
+/// variance: the error of a unit step that reads it.
+pub const FAR_FIELD_OF_WAVES: f64 = 0.1;
+
+/// The two-sided p-value of a standard normal number, from above: Mills' ratio is at most 1/z.
+pub fn p_value(z: f64) -> f64 {
+    let z = z.abs();
+    let density = (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
+    (2.0 * density / z).min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::p_value;
+
+    #[test]
+    fn p_values_bound_the_normal_tail_closely() {
+        // 2(1 − Φ(3)) = 0.0026998, 2(1 − Φ(5)) = 5.7330e-7.
+        assert!((0.002_699_8..0.003).contains(&p_value(3.0)), "{}", p_value(3.0));
+        assert!((5.733e-7..5.97e-7).contains(&p_value(-5.0)), "{}", p_value(-5.0));
+        assert_eq!(p_value(0.0), 1.0);
+    }
+}

@@ -1,0 +1,135 @@
+//! One program, one result: f32 on the CPU against the f64 oracle, and a graphics device against
+//! the CPU, for every graph and method.
+//!
+//! Without an adapter the device's cases show as ignored; with `MIPLESS_REQUIRE_GPU=1` they fail.
+//! `MIPLESS_REPORT=1` prints what was measured.
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use mipless::{Method, Options, Program};
+use mipless_runtime::cpu::Renderer;
+use mipless_runtime::gpu::{AdapterChoice, Gpu, GpuError};
+use mipless_runtime::image::Image;
+use mipless_runtime::job::Job;
+use mipless_runtime::view::{Flat, Plane, Size, View};
+use mipless_tests::case::{Case, all};
+use mipless_tests::tolerance::{DEVICE, F32_AGREES, LEFT_OUT, LEFT_OUT_OF_SAMPLES};
+use mipless_tests::{METHODS, asked, name_of};
+use std::sync::Arc;
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let gpu = Gpu::new(AdapterChoice::Any).map(Arc::new).map_err(Arc::new);
+    if let Ok(gpu) = &gpu {
+        report(&format!("adapter {}", gpu.report()));
+    }
+    let none = matches!(gpu.as_ref().err().map(Arc::as_ref), Some(GpuError::NoAdapter(_)));
+    let ignored = none && !asked("MIPLESS_REQUIRE_GPU");
+    let mut trials = Vec::new();
+    for case in all().into_iter().map(Arc::new) {
+        for method in METHODS {
+            let name = format!("{}_{}", case.name, name_of(method));
+            let on_cpu = Arc::clone(&case);
+            trials.push(Trial::test(format!("oracle_{name}"), move || oracle(&on_cpu, method)));
+            let (on_device, gpu) = (Arc::clone(&case), gpu.clone());
+            let run = move || device(gpu?.as_ref(), &on_device, method);
+            trials.push(Trial::test(format!("device_{name}"), run).with_ignored_flag(ignored));
+        }
+    }
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+/// A picture that recedes to the horizon, so that it holds footprints of every size, and a flat one.
+fn views() -> [View; 2] {
+    let flat = Flat { window: [-1.3, 0.2, 2.1, 2.7] };
+    [View::Plane(Plane::default()), View::Flat(flat)]
+}
+
+fn size() -> Size {
+    Size::new(48, 32)
+}
+
+fn compile(case: &Case, method: Method) -> Program {
+    case.texture.compile(&Options { method, moments: true, ..Options::default() })
+}
+
+fn render<F: mipless_codegen::float::Float>(program: &Program, view: &View) -> Image<F> {
+    let rendered = Renderer::new(program).render(view, size(), None, Job::default());
+    rendered.expect("nothing cancels the job")
+}
+
+/// The difference of two numbers relative to max(1, |wanted|); NaN agrees with nothing.
+fn difference(found: f64, wanted: f64) -> f64 {
+    let difference = (found - wanted).abs() / wanted.abs().max(1.0);
+    if difference.is_nan() { f64::INFINITY } else { difference }
+}
+
+/// For every pixel, the largest difference over the channels between f32 and the oracle.
+fn rounding(single: &Image<f32>, double: &Image<f64>) -> Vec<f64> {
+    let mut worst = vec![0.0_f64; size().pixels()];
+    for (single, double) in single.channels().iter().zip(double.channels()) {
+        for (worst, (&found, &wanted)) in worst.iter_mut().zip(single.iter().zip(double)) {
+            *worst = worst.max(difference(found.into(), wanted));
+        }
+    }
+    worst
+}
+
+fn report(line: &str) {
+    if asked("MIPLESS_REPORT") {
+        eprintln!("{line}");
+    }
+}
+
+fn oracle(case: &Case, method: Method) -> Result<(), Failed> {
+    let program = compile(case, method);
+    let mut failures = Vec::new();
+    for view in views() {
+        let differences = rounding(&render(&program, &view), &render(&program, &view));
+        let left_out = differences.iter().filter(|&&d| d > F32_AGREES).count();
+        let share = left_out as f64 / differences.len() as f64;
+        let worst = differences.iter().copied().fold(0.0, f64::max);
+        let line = format!(
+            "oracle {} {method} {}: {share:.4} of the pixels beyond {F32_AGREES:e}, worst {worst:.2e}",
+            case.name,
+            view.name()
+        );
+        report(&line);
+        let sampled = matches!(method, Method::Supersample(_));
+        if share > if sampled { LEFT_OUT_OF_SAMPLES } else { LEFT_OUT } {
+            failures.push(line);
+        }
+    }
+    verdict(&failures)
+}
+
+fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
+    let program = compile(case, method);
+    let pipeline = gpu.pipeline(&program)?;
+    let mut failures = Vec::new();
+    for view in views() {
+        let single: Image<f32> = render(&program, &view);
+        let roundings = rounding(&single, &render(&program, &view));
+        let (image, _) = gpu.render(&pipeline, &view, size(), Job::default())?;
+        let (mut worst, mut place) = (0.0, String::new());
+        let channels = image.channels().iter().zip(single.channels()).zip(image.names());
+        for ((found, wanted), name) in channels {
+            for (pixel, (&found, &wanted)) in found.iter().zip(wanted).enumerate() {
+                let difference = difference(found.into(), wanted.into());
+                if roundings[pixel] <= F32_AGREES && difference > worst {
+                    worst = difference;
+                    place = format!("{name} of pixel {pixel}: {found} for {wanted}");
+                }
+            }
+        }
+        let line = format!("device {} {method} {}: {worst:.2e} {place}", case.name, view.name());
+        report(&line);
+        if worst > DEVICE {
+            failures.push(line);
+        }
+    }
+    verdict(&failures)
+}
+
+fn verdict(failures: &[String]) -> Result<(), Failed> {
+    if failures.is_empty() { Ok(()) } else { Err(failures.join("\n").into()) }
+}

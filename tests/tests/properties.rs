@@ -1,0 +1,165 @@
+//! Random graphs go through everything without a panic and come out finite; mutilated documents
+//! give diagnostics with places.
+//!
+//! `MIPLESS_LONG=1` tries ten times as many.
+
+use mipless::target::validate;
+use mipless::wgsl::{Entry, Options as Emission, emit};
+use mipless::{Diagnostic, Footprint, Method, Options, Texture};
+use mipless_codegen::ir::verify;
+use mipless_tests::case::all;
+use mipless_tests::random::Random;
+use mipless_tests::{METHODS, cases, random_graph};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use serde_json::Value;
+
+fn config(usual: u32) -> ProptestConfig {
+    // The same cases in every run; what fails is printed whole.
+    let rng_seed = RngSeed::Fixed(20_261);
+    let failure_persistence = None;
+    ProptestConfig { rng_seed, failure_persistence, ..ProptestConfig::with_cases(cases(usual)) }
+}
+
+fn footprints() -> Vec<Footprint> {
+    let mut random = Random::new(23);
+    let mut footprint = |size: f64| {
+        let mut axis = || [0, 1].map(|_| random.within(-size, size) as f32);
+        let (du, dv) = (axis(), axis());
+        let cell = [0, 1].map(|_| random.within(-1e4, 1e4) as i32);
+        Footprint { cell, uv: [0, 1].map(|_| random.unit() as f32), du, dv }
+    };
+    [0.0, 1e-9, 1e-4, 0.01, 0.1, 1.0, 100.0, 1e9].map(&mut footprint).to_vec()
+}
+
+/// Every method compiles the texture to valid IR and valid WGSL, and evaluates it to finite numbers.
+fn holds(texture: &Texture, text: &str) {
+    for method in METHODS {
+        let options = Options { method, moments: true, ..Options::default() };
+        let program = texture.compile(&options);
+        if let Err(violations) = verify(&program.module) {
+            panic!("{method}: {}\n{text}", violations[0]);
+        }
+        let shader = emit(&program, &Emission { entry: Entry::Compute });
+        if let Err(error) = validate(&shader.source) {
+            panic!("{method}: {error}\n{text}");
+        }
+        let outputs = texture.evaluator(&options).evaluate(&footprints());
+        let finite = outputs.iter().flatten().all(|x| x.is_finite());
+        assert!(finite, "{method}: {outputs:?}\n{text}");
+    }
+}
+
+/// Every mistake says where it is.
+fn located(mistakes: &[Diagnostic], text: &str) {
+    assert!(!mistakes.is_empty(), "refused without a reason:\n{text}");
+    for mistake in mistakes {
+        let line = mistake.line.is_some() || mistake.pointer.is_some();
+        assert!(line, "{mistake} stands nowhere:\n{text}");
+        assert!(!mistake.message.is_empty(), "{} says nothing:\n{text}", mistake.code);
+    }
+}
+
+#[test]
+fn random_graphs_mostly_pass_the_check() {
+    let mut random = Random::new(2);
+    let accepted = (0..100).filter(|_| {
+        let text = random_graph::text(&mut random, 6);
+        Texture::from_json(&text).is_ok()
+    });
+    // The others divide by a signal, or something of that kind.
+    assert!(accepted.count() >= 50, "the random graphs are hardly ever graphs");
+}
+
+proptest! {
+    #![proptest_config(config(24))]
+
+    #[test]
+    fn random_graphs_compile_and_evaluate(seed: u64, nodes in 1_usize..12) {
+        let text = random_graph::text(&mut Random::new(seed), nodes);
+        match Texture::from_json(&text) {
+            Ok(texture) => holds(&texture, &text),
+            Err(mistakes) => located(&mistakes, &text),
+        }
+    }
+}
+
+/// Changes one random place of a document.
+fn mutilate(value: &mut Value, random: &mut Random) {
+    let mut place = value;
+    // Down to some depth, one random member each.
+    for _ in 0..random.below(7) {
+        let members = match place {
+            Value::Object(members) => members.len(),
+            Value::Array(members) => members.len(),
+            _ => 0,
+        };
+        if members == 0 {
+            break;
+        }
+        let index = random.below(members);
+        place = match place {
+            Value::Object(members) => members.values_mut().nth(index).expect("a member"),
+            Value::Array(members) => &mut members[index],
+            _ => unreachable!("only these have members"),
+        };
+    }
+    let odd = [
+        "null", "true", "-1", "0", "1e30", "1e-30", "3.5", "[]", "{}", "[1, 2, 3]", "\"#ff0000\"",
+        "\"noise2d\"", "{ \"node\": \"none\" }", "{ \"input\": \"none\" }", "[[[]]]", "\"\"",
+        "9007199254740993", "[1e38, -1e38]", "{ \"type\": \"noise2d\" }",
+    ];
+    let odd: Value = serde_json::from_str(odd[random.below(odd.len())]).expect("JSON");
+    match (random.below(4), place) {
+        (0, Value::Object(members)) if !members.is_empty() => {
+            let key = members.keys().nth(random.below(members.len())).cloned();
+            members.remove(&key.expect("a key"));
+        }
+        (1, Value::Object(members)) => {
+            let keys = ["in", "in1", "type", "nodes", "value", "extra", "seed", "odd", "doc"];
+            members.insert((*random.choose(&keys)).to_owned(), odd);
+        }
+        (2, Value::Array(members)) => members.push(odd),
+        (_, place) => *place = odd,
+    }
+}
+
+proptest! {
+    #![proptest_config(config(400))]
+
+    #[test]
+    fn mutilated_documents_give_located_diagnostics(seed: u64, changes in 1_usize..4) {
+        let mut random = Random::new(seed);
+        let originals = all();
+        let case = random.choose(&originals);
+        let mut document: Value = serde_json::from_str(&case.text).expect("JSON");
+        for _ in 0..changes {
+            mutilate(&mut document, &mut random);
+        }
+        let text = serde_json::to_string_pretty(&document).expect("JSON");
+        match Texture::from_json(&text) {
+            Ok(texture) => {
+                let options = Options { method: Method::Local, ..Options::default() };
+                let outputs = texture.evaluator(&options).evaluate(&footprints());
+                prop_assert!(outputs.iter().flatten().all(|x| x.is_finite()), "{text}");
+            }
+            Err(mistakes) => located(&mistakes, &text),
+        }
+    }
+
+    #[test]
+    fn truncated_and_garbled_texts_give_located_diagnostics(seed: u64) {
+        let mut random = Random::new(seed);
+        let originals = all();
+        let mut bytes = random.choose(&originals).text.clone().into_bytes();
+        bytes.truncate(1 + random.below(2 * bytes.len()));
+        for _ in 0..random.below(4) {
+            let index = random.below(bytes.len());
+            bytes[index] = *random.choose(b"{}[]\",:0e-x\\\n");
+        }
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        if let Err(mistakes) = Texture::from_json(&text) {
+            located(&mistakes, &text);
+        }
+    }
+}
