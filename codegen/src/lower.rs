@@ -68,8 +68,9 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         moments: options.moments,
     };
     let live = symbols::live(graph);
+    let literal = symbols::literal(graph);
     let (functions, fused) = (RefCell::default(), RefCell::default());
-    let compiler = Compiler { graph, catalogue, options, live, functions, fused };
+    let compiler = Compiler { graph, catalogue, options, live, literal, functions, fused };
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
     Program { module: module.pruned(), interface }
@@ -93,6 +94,8 @@ struct Compiler<'a> {
     options: &'a Options,
     /// How many live edges read each node's output.
     live: Vec<u32>,
+    /// Whether literals alone shape each node's output.
+    literal: Vec<bool>,
     /// The functions that nodes share, by their keys.
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.

@@ -37,6 +37,7 @@ impl<'a> Compiler<'a> {
             catalogue: self.catalogue,
             options,
             live: self.live.clone(),
+            literal: self.literal.clone(),
             functions: Default::default(),
             fused: Default::default(),
         }
@@ -81,8 +82,9 @@ impl Lower<'_> {
                 None => {
                     let bundle = self.bundles[id.index()].as_ref()?;
                     if bundle.iter().all(|signal| signal.is_certain(&self.algebra.b)) {
-                        // A number: constant nodes are fixed, others hang on parameters.
-                        fixed &= bundle.iter().all(|s| self.algebra.b.as_constant(s.mean).is_some());
+                        // A number: what hangs on a parameter, even one that drops out of it,
+                        // cannot be computed apart from the parameters.
+                        fixed &= self.compiler.literal[id.index()];
                         continue;
                     }
                     if bundle.len() != 1 {

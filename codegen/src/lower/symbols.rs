@@ -28,6 +28,20 @@ pub(super) fn live(graph: &Graph) -> Vec<u32> {
     uses
 }
 
+/// Whether literals alone shape each node: no surface and no live parameter.
+pub(super) fn literal(graph: &Graph) -> Vec<bool> {
+    let mut literal = Vec::with_capacity(graph.nodes.len());
+    for node in &graph.nodes {
+        let alone = node.inputs.iter().all(|input| match &input.source {
+            Source::Literal(_) => true,
+            Source::Node(id) => literal[id.index()],
+            Source::Surface | Source::Parameter(_) => false,
+        });
+        literal.push(alone);
+    }
+    literal
+}
+
 /// How many live nodes carry each symbol. A symbol is its own only while several do: from the fork
 /// where it was born to where its paths have met.
 #[derive(Debug, Default)]
