@@ -20,6 +20,16 @@ pub struct Panel<'a> {
 const GAP: usize = 8;
 const TEXT: RasterHeight = RasterHeight::Size16;
 const LINE: usize = 20;
+
+/// How heavy letters are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ink {
+    /// Text.
+    Regular,
+    /// Names.
+    Bold,
+}
+
 /// sRGB grey levels of the paper and of the ink.
 const PAPER: f32 = 0.96;
 const INK: f32 = 0.12;
@@ -46,11 +56,11 @@ pub fn compose(panels: &[Panel<'_>]) -> Image {
         place(&mut sheet, panel.image, left, GAP);
         let room = panel.image.width() as usize;
         let top = tallest + 2 * GAP;
-        caption(&mut sheet, panel.title, FontWeight::Bold, [left, top], room);
+        caption(&mut sheet, panel.title, Ink::Bold, [left, top], room);
         caption(
             &mut sheet,
             panel.detail,
-            FontWeight::Regular,
+            Ink::Regular,
             [left, top + LINE],
             room,
         );
@@ -80,13 +90,17 @@ fn place(sheet: &mut Image, image: &Image, left: usize, top: usize) {
 }
 
 /// Writes one line, cut to `room` pixels. Characters that the font does not have become `?`.
-fn caption(
+pub(crate) fn caption(
     sheet: &mut Image,
     text: &str,
-    weight: FontWeight,
+    weight: Ink,
     [left, top]: [usize; 2],
     room: usize,
 ) {
+    let weight = match weight {
+        Ink::Regular => FontWeight::Regular,
+        Ink::Bold => FontWeight::Bold,
+    };
     let advance = get_raster_width(weight, TEXT);
     let stride = sheet.width() as usize;
     for (place, character) in text.chars().take(room / advance).enumerate() {

@@ -86,11 +86,39 @@ impl Format {
 /// # Errors
 /// If the encoder refuses the image, or the file cannot be written.
 pub fn write(path: &Path, image: &Image, format: Format) -> Result<(), FileError> {
-    let bytes = match format {
-        Format::Png(bits) => png(image, bits).map_err(|e| FileError::Png(path.into(), e))?,
-        Format::Exr => exr_bytes(image).map_err(|e| FileError::Exr(path.into(), e))?,
-    };
+    let bytes = encode(path, image, format)?;
     write_whole(path, &bytes).map_err(|e| FileError::Write(path.into(), e))
+}
+
+/// The bytes of the file that [`write()`] writes; `path` is for the error alone.
+///
+/// # Errors
+/// If the encoder refuses the image.
+pub fn encode(path: &Path, image: &Image, format: Format) -> Result<Vec<u8>, FileError> {
+    match format {
+        Format::Png(bits) => png(image, bits).map_err(|e| FileError::Png(path.into(), e)),
+        Format::Exr => exr_bytes(image).map_err(|e| FileError::Exr(path.into(), e)),
+    }
+}
+
+/// Writes several files of any kind: every one whole, and none unless the bytes of all of them have
+/// found room.
+///
+/// # Errors
+/// If one of the files or folders cannot be written; then existing files are as they were, unless
+/// the very last step, taking the name, fails for one file after it worked for another.
+pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), FileError> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |error| FileError::Write(path, error)
+    };
+    let staged: Result<Vec<_>, _> = (files.iter())
+        .map(|(path, bytes)| Staged::new(path, bytes).map_err(failed(path)))
+        .collect();
+    for (staged, (path, bytes)) in staged?.into_iter().zip(files) {
+        staged.finish(bytes).map_err(failed(path))?;
+    }
+    Ok(())
 }
 
 /// Writes a file of any kind, whole or not at all. An existing file is replaced in one step, a
@@ -99,30 +127,50 @@ pub fn write(path: &Path, image: &Image, format: Format) -> Result<(), FileError
 /// # Errors
 /// If the file or its folder cannot be written; then an existing file is as it was.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let resolved = fs::canonicalize(path);
-    let path = resolved.as_deref().unwrap_or(path);
-    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
-        return fs::OpenOptions::new()
-            .write(true)
-            .open(path)?
-            .write_all(bytes);
+    Staged::new(path, bytes)?.finish(bytes)
+}
+
+/// A file that is ready to take its name.
+enum Staged {
+    /// Its bytes lie beside the name, which they are to take.
+    Beside(tempfile::NamedTempFile, PathBuf),
+    /// What is no regular file takes the bytes in the end.
+    Direct(fs::File),
+}
+
+impl Staged {
+    fn new(path: &Path, bytes: &[u8]) -> io::Result<Self> {
+        let resolved = fs::canonicalize(path);
+        let path = resolved.as_deref().unwrap_or(path);
+        if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+            return Ok(Self::Direct(fs::OpenOptions::new().write(true).open(path)?));
+        }
+        let folder = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".mipless-");
+        #[cfg(unix)]
+        {
+            // Temporary files are private by default; a picture is as readable as any other file.
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        let mut file = builder.tempfile_in(folder)?;
+        file.write_all(bytes)?;
+        Ok(Self::Beside(file, path.to_path_buf()))
     }
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".mipless-");
-    #[cfg(unix)]
-    {
-        // Temporary files are private by default; a picture is as readable as any other file.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
+
+    fn finish(self, bytes: &[u8]) -> io::Result<()> {
+        match self {
+            Self::Beside(file, path) => {
+                file.persist(path).map_err(|error| error.error)?;
+                Ok(())
+            }
+            Self::Direct(mut file) => file.write_all(bytes),
+        }
     }
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
 }
 
 fn png(image: &Image, bits: Bits) -> ::image::ImageResult<Vec<u8>> {

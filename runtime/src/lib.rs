@@ -8,9 +8,11 @@
 //! - [`image::Image::mean`] takes one output out of it, [`view::View::present`] lights it and puts
 //!   the background behind it, [`image_file`] writes it as PNG or EXR.
 //! - [`device::Device`] is the choice between the two. [`metrics`] says how far two images are apart, and [`compare`] sets them side by side.
+//! - [`plan`] measures error and cost of the methods and chooses one; [`chart`] draws what it found.
 //!
 //! This is the only crate that knows wgpu, and it holds no semantics of graphs.
 
+pub mod chart;
 pub mod compare;
 pub mod cpu;
 pub mod device;
@@ -20,5 +22,6 @@ pub mod image;
 pub mod image_file;
 pub mod job;
 pub mod metrics;
+pub mod plan;
 pub mod srgb;
 pub mod view;

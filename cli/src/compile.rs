@@ -1,0 +1,238 @@
+//! `compile`: shaders and what a host needs to know of them.
+
+use crate::load::{self, allows_sampling};
+use crate::mistake::Mistake;
+use crate::report::Report;
+use crate::value;
+use clap::{Args, ValueEnum};
+use mipless::target::{Manifest, Target, TranslateError, translate};
+use mipless::wgsl::{self, Entry};
+use mipless::{Diagnostic, Method, Options, PixelFilter};
+use mipless_runtime::image_file::write_all;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The arguments of `compile`.
+#[derive(Args, Debug)]
+pub(crate) struct Arguments {
+    /// Graphs, JSON files; `-` is standard input
+    #[arg(value_name = "GRAPH", required = true)]
+    graphs: Vec<PathBuf>,
+
+    /// The folder for the shaders, tables and manifests; it is made if it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+
+    /// The shading languages
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "wgsl")]
+    target: Vec<TargetName>,
+
+    /// auto, point, naive, ensemble, local, quad, split:4|7|16 or supersample:N
+    #[arg(long, default_value = "auto")]
+    method: Method,
+
+    /// The entry point that calls the texture's function [default: none, or fragment where a target
+    /// cannot do without]
+    #[arg(long, value_enum)]
+    entry: Option<EntryName>,
+
+    /// The filter over which a pixel is averaged; deviation in pixels
+    #[arg(long, value_name = "gaussian:SD|box", default_value = "gaussian:0.5",
+        value_parser = value::pixel_filter)]
+    pixel_filter: PixelFilter,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TargetName {
+    Wgsl,
+    Spirv,
+    Glsl,
+    Hlsl,
+    Msl,
+}
+
+impl From<TargetName> for Target {
+    fn from(name: TargetName) -> Self {
+        match name {
+            TargetName::Wgsl => Self::Wgsl,
+            TargetName::Spirv => Self::Spirv,
+            TargetName::Glsl => Self::Glsl,
+            TargetName::Hlsl => Self::Hlsl,
+            TargetName::Msl => Self::Msl,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EntryName {
+    Fragment,
+    Compute,
+    None,
+}
+
+/// Compiles every graph; the files of a graph are written together or not at all.
+pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mistake> {
+    let job = Job::new(arguments)?;
+    // Who writes what, so that two graphs of one name do not overwrite each other.
+    let mut owners = BTreeMap::new();
+    let mut compiled = Vec::new();
+    for path in &arguments.graphs {
+        match job.graph(path, &mut owners, report) {
+            Ok(result) => compiled.push(result),
+            Err(mistake) => report.mistake(&mistake),
+        }
+    }
+    report.result("compiled", compiled);
+    Ok(())
+}
+
+/// What is done to every graph.
+struct Job<'a> {
+    arguments: &'a Arguments,
+    targets: Vec<Target>,
+    entry: Entry,
+    /// The graphs themselves, which no output may replace.
+    graphs: Vec<PathBuf>,
+}
+
+impl<'a> Job<'a> {
+    fn new(arguments: &'a Arguments) -> Result<Self, Mistake> {
+        let mut targets: Vec<Target> = arguments.target.iter().map(|&name| name.into()).collect();
+        targets.sort();
+        targets.dedup();
+        let needs = targets.iter().find(|target| target.needs_entry());
+        let entry = match (arguments.entry, needs) {
+            (Some(EntryName::None), Some(&target)) => {
+                return Err(
+                    Mistake::usage("needs-entry", TranslateError::NeedsEntry(target))
+                        .help("choose `--entry fragment` or `--entry compute`"),
+                );
+            }
+            (Some(EntryName::Fragment), _) | (None, Some(_)) => Entry::Fragment,
+            (Some(EntryName::Compute), _) => Entry::Compute,
+            (Some(EntryName::None) | None, None) => Entry::None,
+        };
+        if arguments.out.exists() && !arguments.out.is_dir() {
+            let message = format!("{}: it is no folder", arguments.out.display());
+            return Err(Mistake::usage("unwritable-file", message));
+        }
+        let graphs = arguments
+            .graphs
+            .iter()
+            .filter_map(|path| fs::canonicalize(path).ok());
+        Ok(Self {
+            arguments,
+            targets,
+            entry,
+            graphs: graphs.collect(),
+        })
+    }
+
+    fn graph(
+        &self,
+        path: &Path,
+        owners: &mut BTreeMap<PathBuf, PathBuf>,
+        report: &mut Report,
+    ) -> Result<Value, Mistake> {
+        let Arguments {
+            method,
+            pixel_filter,
+            out,
+            ..
+        } = self.arguments;
+        let texture = load::load(path, &allows_sampling(*method), report)?;
+        let options = Options {
+            method: *method,
+            filter: *pixel_filter,
+            ..Options::default()
+        };
+        let program = texture.compile(&options);
+        let shader = wgsl::emit(&program, &wgsl::Options { entry: self.entry });
+        let name = &shader.function;
+
+        let mut files = Vec::new();
+        let mut listed = Map::new();
+        let mut file = |key: &str, extension: &str, bytes: Vec<u8>| {
+            let file = format!("{name}.{extension}");
+            listed.insert(key.to_owned(), file.clone().into());
+            files.push((out.join(file), bytes));
+        };
+        for &target in &self.targets {
+            let bytes = translate(&shader, target).map_err(|error| {
+                let message = format!("the shader is not valid: {error}");
+                let diagnostic = Diagnostic::error("invalid-shader", message)
+                    .help("this is a bug of the compiler; please report it with the graph");
+                Mistake::graph(path, vec![diagnostic])
+            })?;
+            let stage = shader.entry_point.as_ref().map(|entry| entry.stage);
+            file(target.name(), target.extension(stage), bytes);
+        }
+        if let Some(tables) = &shader.tables {
+            let bytes = tables.data().iter().flat_map(|x| x.to_le_bytes()).collect();
+            file("tables", "tables.bin", bytes);
+        }
+        let manifest = Manifest::new(&shader, |name| {
+            let parameter = texture.parameters().iter().find(|p| p.name == name);
+            parameter.map_or((None, None), |p| (p.min, p.max))
+        });
+        let mut manifest = serde_json::from_str(&manifest.to_json()).unwrap_or(Value::Null);
+        manifest["method"] = method.to_string().into();
+        manifest["pixel_filter"] = value::pixel_filter_name(*pixel_filter).into();
+        manifest["files"] = listed.into();
+        files.push((
+            out.join(format!("{name}.json")),
+            format!("{manifest:#}\n").into_bytes(),
+        ));
+
+        self.claim(path, &files, owners)?;
+        let unwritable = |error: &dyn std::fmt::Display| {
+            Mistake::usage("unwritable-file", format!("{}: {error}", out.display()))
+        };
+        fs::create_dir_all(out).map_err(|error| unwritable(&error))?;
+        write_all(&files).map_err(|error| unwritable(&error))?;
+
+        let written: Vec<String> = files.iter().map(|(f, _)| f.display().to_string()).collect();
+        report.note(format_args!("{}: {}", path.display(), written.join(", ")));
+        Ok(serde_json::json!({
+            "graph": path.display().to_string(),
+            "files": written,
+            "manifest": manifest,
+        }))
+    }
+
+    /// Refuses to write over a graph, or over what another graph of this run has written.
+    fn claim(
+        &self,
+        path: &Path,
+        files: &[(PathBuf, Vec<u8>)],
+        owners: &mut BTreeMap<PathBuf, PathBuf>,
+    ) -> Result<(), Mistake> {
+        for (file, _) in files {
+            let replaced = fs::canonicalize(file).ok();
+            if replaced.is_some_and(|file| self.graphs.contains(&file)) {
+                let message = format!("{} would replace a graph", file.display());
+                return Err(Mistake::usage("unwritable-file", message)
+                    .help("choose another folder with `--out`"));
+            }
+            if let Some(owner) = owners.get(file) {
+                let message = format!(
+                    "{} and {} would both write {}",
+                    owner.display(),
+                    path.display(),
+                    file.display()
+                );
+                return Err(
+                    Mistake::usage("same-name", message).help("give the graphs different names")
+                );
+            }
+        }
+        owners.extend(
+            files
+                .iter()
+                .map(|(file, _)| (file.clone(), path.to_path_buf())),
+        );
+        Ok(())
+    }
+}

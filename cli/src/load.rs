@@ -1,0 +1,90 @@
+//! Reading graphs from files.
+
+use crate::mistake::{Mistake, Status};
+use crate::report::Report;
+use mipless::{Diagnostic, Method, Texture};
+use mipless_graph::CheckOptions;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The largest file that is read, in bytes: a graph of a million nodes takes about a tenth.
+const LARGEST: u64 = 1 << 30;
+
+/// Whether a graph may hold signals that only sampling filters.
+pub(crate) fn allows_sampling(method: Method) -> CheckOptions {
+    CheckOptions {
+        allow_sampling: matches!(method, Method::Supersample(_)),
+    }
+}
+
+/// Reads and checks a graph, and says its warnings; `-` is standard input.
+pub(crate) fn load(
+    path: &Path,
+    options: &CheckOptions,
+    report: &mut Report,
+) -> Result<Texture, Mistake> {
+    let text = read(path)?;
+    let texture = parse(path, &text, options)?;
+    warn(path, &texture, report);
+    Ok(texture)
+}
+
+/// Says the warnings of a graph.
+pub(crate) fn warn(path: &Path, texture: &Texture, report: &mut Report) {
+    let file = path.display().to_string();
+    for warning in texture.warnings() {
+        report.diagnostic(Some(&file), warning);
+    }
+}
+
+/// Checks the text of a graph.
+pub(crate) fn parse(path: &Path, text: &str, options: &CheckOptions) -> Result<Texture, Mistake> {
+    Texture::with_options(text, options).map_err(|diagnostics| Mistake::graph(path, diagnostics))
+}
+
+/// Reads a text; `-` is standard input.
+pub(crate) fn read(path: &Path) -> Result<String, Mistake> {
+    let unreadable = |error: io::Error| Mistake {
+        status: Status::Usage,
+        file: Some(path.display().to_string()),
+        diagnostics: vec![Diagnostic::error(
+            "unreadable-file",
+            format!("the file cannot be read: {error}"),
+        )],
+    };
+    let mut bytes = Vec::new();
+    let read = if path == Path::new("-") {
+        io::stdin().lock().take(LARGEST + 1).read_to_end(&mut bytes)
+    } else {
+        File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes))
+    };
+    let length = read.map_err(unreadable)?;
+    if length as u64 > LARGEST {
+        return Err(unreadable(io::Error::other("it is larger than 1 GiB")));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let (line, column) = place(&String::from_utf8_lossy(good));
+        let diagnostic = Diagnostic::error("not-utf8", "the text is not UTF-8")
+            .at_line(line, column)
+            .help("save the file as UTF-8");
+        Mistake::graph(path, vec![diagnostic])
+    })
+}
+
+/// The line and the column, from 1, of what follows `text`.
+fn place(text: &str) -> (u32, u32) {
+    let line = text.bytes().filter(|&byte| byte == b'\n').count() + 1;
+    let column = text.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+    (line as u32, column as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn places_count_characters_from_one() {
+        assert_eq!(super::place(""), (1, 1));
+        assert_eq!(super::place("a\nöb"), (2, 3));
+    }
+}

@@ -1,0 +1,340 @@
+//! What is looked at, and how: the arguments that the verbs which evaluate a graph share.
+
+use crate::load;
+use crate::mistake::Mistake;
+use crate::progress;
+use crate::report::Report;
+use crate::value;
+use clap::{Args, ValueEnum};
+use mipless::{Method, Options, Parameter, PixelFilter, Program, Texture};
+use mipless_graph::{CheckOptions, suggest};
+use mipless_runtime::cpu::Renderer;
+use mipless_runtime::device::{Device, DeviceChoice};
+use mipless_runtime::image::{Image, outputs};
+use mipless_runtime::job::Job;
+use mipless_runtime::view::{Flat, Size, View};
+use std::path::{Path, PathBuf};
+
+/// The arguments.
+#[derive(Args, Debug)]
+#[group(skip)]
+pub(crate) struct Arguments {
+    /// The graph, a JSON file; `-` is standard input
+    #[arg(value_name = "GRAPH")]
+    pub(crate) graph: PathBuf,
+
+    /// The size of the picture in pixels [render: 1280x720, trade: 1280x720, compare: 480x270]
+    #[arg(long, value_name = "WxH", value_parser = value::size)]
+    size: Option<Size>,
+
+    /// The output of the graph; needed when there are several
+    #[arg(long, value_name = "NAME")]
+    output: Option<String>,
+
+    /// Set an input of the graph: 0.5 or 0.1,0.2,0.3 or #rrggbb or true
+    #[arg(long = "set", value_name = "INPUT=VALUE", value_parser = value::setting)]
+    settings: Vec<(String, String)>,
+
+    /// A plane to the horizon, a rectangle of texture space, or a lit sphere
+    #[arg(long, value_enum, default_value = "plane")]
+    view: ViewName,
+
+    /// The rectangle of texture space that the flat view shows [default: 0,0,1,1]
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true,
+        value_parser = value::window)]
+    window: Option<[f64; 4]>,
+
+    /// The filter over which a pixel is averaged; deviation in pixels
+    #[arg(long, value_name = "gaussian:SD|box", default_value = "gaussian:0.5",
+        value_parser = value::pixel_filter)]
+    pixel_filter: PixelFilter,
+
+    /// Where to evaluate: `auto` is a hardware GPU if there is one, else the CPU
+    #[arg(long, value_enum, default_value = "auto")]
+    device: DeviceName,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ViewName {
+    Plane,
+    Flat,
+    Sphere,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum DeviceName {
+    Auto,
+    Cpu,
+    Gpu,
+}
+
+impl From<DeviceName> for DeviceChoice {
+    fn from(name: DeviceName) -> Self {
+        match name {
+            DeviceName::Auto => Self::Auto,
+            DeviceName::Cpu => Self::Cpu,
+            DeviceName::Gpu => Self::Gpu,
+        }
+    }
+}
+
+/// A graph with everything that is needed to look at it.
+#[derive(Debug)]
+pub(crate) struct Scene {
+    /// The graph.
+    pub(crate) texture: Texture,
+    /// The view.
+    pub(crate) view: View,
+    /// The size of the picture.
+    pub(crate) size: Size,
+    /// The pixel filter.
+    pub(crate) filter: PixelFilter,
+    /// The numbers of the graph's inputs, one a component, in order.
+    pub(crate) parameters: Vec<f32>,
+    /// The position of the output that is looked at.
+    pub(crate) output: usize,
+    /// The device that evaluates.
+    pub(crate) device: Device,
+    falls_back: bool,
+}
+
+/// What was evaluated, without light and background.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    /// The mean of each channel.
+    pub(crate) mean: Image,
+    /// The variance of each channel, where it was asked for.
+    pub(crate) variance: Option<Image>,
+}
+
+impl Arguments {
+    /// Loads the graph, checks the arguments against it, and opens the device.
+    pub(crate) fn open(
+        &self,
+        check: &CheckOptions,
+        default: Size,
+        report: &mut Report,
+    ) -> Result<Scene, Mistake> {
+        self.check()?;
+        let texture = load::load(&self.graph, check, report)?;
+        self.scene(texture, default)
+    }
+
+    /// Checks what can be checked without the graph.
+    pub(crate) fn check(&self) -> Result<(), Mistake> {
+        if self.window.is_some() && self.view != ViewName::Flat {
+            return Err(Mistake::usage("usage", "`--window` is for the flat view")
+                .help("add `--view flat`"));
+        }
+        Ok(())
+    }
+
+    /// A scene of a graph that is already loaded.
+    pub(crate) fn scene(&self, texture: Texture, default: Size) -> Result<Scene, Mistake> {
+        let parameters = settings(&texture, &self.settings)?;
+        let output = output(&texture, self.output.as_deref())?;
+        let view = match self.view {
+            ViewName::Plane => View::default(),
+            ViewName::Flat => {
+                let window = self.window.unwrap_or(Flat::default().window);
+                View::Flat(Flat { window })
+            }
+            ViewName::Sphere => View::Sphere(Default::default()),
+        };
+        let device = Device::open(self.device.into()).map_err(|error| {
+            Mistake::usage("no-device", error).help("`--device cpu` works everywhere")
+        })?;
+        Ok(Scene {
+            texture,
+            view,
+            size: self.size.unwrap_or(default),
+            filter: self.pixel_filter,
+            parameters,
+            output,
+            device,
+            falls_back: self.device == DeviceName::Auto,
+        })
+    }
+}
+
+impl Scene {
+    /// The options for a method.
+    pub(crate) fn options(&self, method: Method) -> Options {
+        Options {
+            method,
+            filter: self.filter,
+            ..Options::default()
+        }
+    }
+
+    /// The name of the output that is looked at.
+    pub(crate) fn output_name(&self) -> &str {
+        &self.texture.outputs()[self.output].name
+    }
+
+    /// Evaluates the graph over the view. A GPU that was chosen on its own and fails is replaced by
+    /// the CPU, with a warning.
+    pub(crate) fn evaluate(
+        &mut self,
+        options: &Options,
+        report: &mut Report,
+    ) -> Result<Frame, Mistake> {
+        let program = self.texture.compile(options);
+        let label = options.method.to_string();
+        let all = match self.on_gpu(&program, &label, report) {
+            Some(Ok(image)) => image,
+            Some(Err(error)) if self.falls_back => {
+                let message = format!("{}: {error}; the CPU evaluates instead", self.device);
+                report.warn("device-failed", message);
+                self.device = Device::Cpu;
+                self.on_cpu(&program, &label, report)?
+            }
+            Some(Err(error)) => {
+                let message = format!("{}: {error}", self.device);
+                return Err(Mistake::usage("device-failed", message)
+                    .help("`--device cpu` works everywhere"));
+            }
+            None => self.on_cpu(&program, &label, report)?,
+        };
+        let place = &outputs(&program.interface)[self.output];
+        Ok(Frame {
+            mean: all.mean(place),
+            variance: all.variance(place),
+        })
+    }
+
+    fn on_cpu(&self, program: &Program, label: &str, report: &Report) -> Result<Image, Mistake> {
+        let mut renderer = Renderer::<f32>::new(program);
+        renderer.set_parameters(&self.parameters);
+        let render = |job: Job<'_>| renderer.render(&self.view, self.size, None, job);
+        progress::watch(report, label, render)
+            .map_err(|error| Mistake::usage("render-failed", error))
+    }
+
+    /// `None` if the device is no GPU.
+    fn on_gpu(
+        &self,
+        program: &Program,
+        label: &str,
+        report: &Report,
+    ) -> Option<Result<Image, mipless_runtime::gpu::GpuError>> {
+        let Device::Gpu(gpu) = &self.device else {
+            return None;
+        };
+        let render = |job: Job<'_>| {
+            let pipeline = gpu.pipeline(program)?;
+            gpu.set_parameters(&pipeline, &self.parameters)?;
+            Ok(gpu.render(&pipeline, &self.view, self.size, job)?.0)
+        };
+        Some(progress::watch(report, label, render))
+    }
+}
+
+/// The numbers of all inputs, with these set.
+fn settings(texture: &Texture, settings: &[(String, String)]) -> Result<Vec<f32>, Mistake> {
+    let parameters = texture.parameters();
+    let mut values: Vec<Vec<f32>> = parameters.iter().map(|p| p.value.numbers()).collect();
+    let mut wrong = Vec::new();
+    for (name, text) in settings {
+        let Some(index) = parameters.iter().position(|p| p.name == *name) else {
+            let names = parameters.iter().map(|p| p.name.as_str());
+            let near = suggest(name, names).map(|near| format!("did you mean `{near}`? "));
+            let message = format!("the graph has no input `{name}`");
+            let help = near.unwrap_or_default() + &inputs(parameters);
+            wrong.push(mipless::Diagnostic::error("unknown-input", message).help(help));
+            continue;
+        };
+        match parameters[index].parse(text) {
+            Ok(value) => values[index] = value.numbers(),
+            Err(error) => {
+                let message = format!("input `{name}`: {error}");
+                let help = inputs(&parameters[index..=index]);
+                wrong.push(mipless::Diagnostic::error("bad-setting", message).help(help));
+            }
+        }
+    }
+    if wrong.is_empty() {
+        Ok(values.concat())
+    } else {
+        Err(Mistake {
+            status: crate::mistake::Status::Usage,
+            file: None,
+            diagnostics: wrong,
+        })
+    }
+}
+
+/// The inputs with their types, defaults and ranges.
+fn inputs(parameters: &[Parameter]) -> String {
+    if parameters.is_empty() {
+        return "the graph has no inputs".to_owned();
+    }
+    let one = |p: &Parameter| {
+        let value: Vec<String> = p.value.numbers().iter().map(f32::to_string).collect();
+        let range = match (p.min, p.max) {
+            (Some(min), Some(max)) => format!(", from {min} to {max}"),
+            (Some(min), None) => format!(", at least {min}"),
+            (None, Some(max)) => format!(", at most {max}"),
+            (None, None) => String::new(),
+        };
+        format!("`{}` ({} {}{range})", p.name, p.ty, value.join(","))
+    };
+    let noun = if parameters.len() == 1 {
+        "the input is"
+    } else {
+        "the inputs are"
+    };
+    format!(
+        "{noun} {}",
+        parameters.iter().map(one).collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// The position of the output that is asked for.
+fn output(texture: &Texture, name: Option<&str>) -> Result<usize, Mistake> {
+    let outputs = texture.outputs();
+    let names: Vec<&str> = outputs.iter().map(|output| output.name.as_str()).collect();
+    let listed = format!("the outputs are `{}`", names.join("`, `"));
+    match name {
+        None if names.len() == 1 => Ok(0),
+        None => Err(
+            Mistake::usage("which-output", "the graph has several outputs")
+                .help(format!("add `--output NAME`; {listed}")),
+        ),
+        Some(name) => names
+            .iter()
+            .position(|known| *known == name)
+            .ok_or_else(|| {
+                let near = suggest(name, names.iter().copied());
+                let near = near
+                    .map(|near| format!("did you mean `{near}`? "))
+                    .unwrap_or_default();
+                Mistake::usage(
+                    "unknown-output",
+                    format!("the graph has no output `{name}`"),
+                )
+                .help(near + &listed)
+            }),
+    }
+}
+
+/// Refuses a path whose folder does not exist, before any work is done for it.
+pub(crate) fn writable(path: &Path) -> Result<(), Mistake> {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let unwritable = |reason: &str| {
+        Err(Mistake::usage(
+            "unwritable-file",
+            format!("{}: {reason}", path.display()),
+        ))
+    };
+    if !folder.is_dir() {
+        return unwritable("its folder does not exist");
+    }
+    if path.is_dir() {
+        return unwritable("it is a folder");
+    }
+    Ok(())
+}

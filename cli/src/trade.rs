@@ -1,0 +1,195 @@
+//! `trade`: error against cost of every method, on one graph and this machine.
+
+use crate::mistake::Mistake;
+use crate::plan;
+use crate::progress;
+use crate::report::Report;
+use crate::scene::{self, Scene};
+use crate::value;
+use clap::Args;
+use mipless::Method;
+use mipless_graph::CheckOptions;
+use mipless_runtime::chart::{Chart, Mark, draw};
+use mipless_runtime::device::Device;
+use mipless_runtime::image_file::{Bits, Format, encode, write_all};
+use mipless_runtime::job::Job;
+use mipless_runtime::plan::{Measurement, TRUTH, front};
+use mipless_runtime::view::Size;
+use serde_json::{Value, json};
+use std::fs;
+use std::path::PathBuf;
+
+/// The arguments of `trade`.
+#[derive(Args, Debug)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: scene::Arguments,
+
+    /// The folder for trade.json and trade.png; it is made if it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Every method.
+const METHODS: [Method; 14] = [
+    Method::Point,
+    Method::Naive,
+    Method::Ensemble,
+    Method::Local,
+    Method::Quad,
+    Method::Auto,
+    Method::Split(4),
+    Method::Split(7),
+    Method::Split(16),
+    Method::Supersample(4),
+    Method::Supersample(16),
+    Method::Supersample(64),
+    Method::Supersample(256),
+    Method::Supersample(1024),
+];
+
+/// Pixels over which errors are measured.
+const PIXELS: usize = 80 * 48;
+
+/// Measures, draws and writes.
+pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mistake> {
+    let out = &arguments.out;
+    if out.exists() && !out.is_dir() {
+        let message = format!("{}: it is no folder", out.display());
+        return Err(Mistake::usage("unwritable-file", message));
+    }
+    let default = Size::new(1280, 720);
+    let scene = arguments
+        .scene
+        .open(&CheckOptions::default(), default, report)?;
+    let mut measured = plan::measured(&scene, &METHODS, PIXELS, report)?;
+    let floor = measured.noise_floor;
+    let on_gpu = time_on_gpu(&scene, &mut measured.methods, report)?;
+    let best = front(&measured.methods);
+
+    let methods: Vec<Value> = (measured.methods.iter().zip(&best))
+        .map(|(m, best)| {
+            json!({
+                "method": m.method.to_string(),
+                "error": m.error,
+                "cost": m.cost,
+                "seconds": m.seconds * 1e6,
+                "pareto": best,
+            })
+        })
+        .collect();
+    let runs_on = if on_gpu {
+        scene.device.to_string()
+    } else {
+        "CPU (1 thread)".to_owned()
+    };
+    let name = &scene.texture.checked().graph().name;
+    let found = json!({
+        "graph": name,
+        "output": scene.output_name(),
+        "view": scene.view.name(),
+        "size": [scene.size.width, scene.size.height],
+        "pixel_filter": value::pixel_filter_name(scene.filter),
+        "device": runs_on,
+        "truth": TRUTH.to_string(),
+        "error_unit": "sRGB, clamped, root mean square",
+        "cost_unit": "times the cost of point",
+        "seconds_for": "a million pixels",
+        "pixels": measured.pixels,
+        "noise_floor": floor,
+        "methods": methods,
+    });
+
+    let mark = |(m, best): (&Measurement, &bool)| Mark {
+        label: m.method.to_string(),
+        x: m.cost,
+        y: m.error,
+        best: *best,
+    };
+    let marks: Vec<Mark> = measured.methods.iter().zip(&best).map(mark).collect();
+    let chart = draw(&Chart {
+        title: &format!("{name}: {} view, {runs_on}", scene.view.name()),
+        x: "cost, times point",
+        y: "error, sRGB RMS",
+        floor,
+        marks: &marks,
+    });
+    let unwritable = |error: &dyn std::fmt::Display| Mistake::usage("unwritable-file", error);
+    let (data, picture) = (out.join("trade.json"), out.join("trade.png"));
+    let bytes = encode(&picture, &chart, Format::Png(Bits::Eight)).map_err(|e| unwritable(&e))?;
+    let files = [
+        (data, format!("{found:#}\n").into_bytes()),
+        (picture, bytes),
+    ];
+    fs::create_dir_all(out)
+        .map_err(|error| unwritable(&format_args!("{}: {error}", out.display())))?;
+    write_all(&files).map_err(|e| unwritable(&e))?;
+
+    if !report.is_json() {
+        report.print(table(&measured.methods, &best));
+    }
+    let names: Vec<String> = files
+        .iter()
+        .map(|(path, _)| path.display().to_string())
+        .collect();
+    report.note(format_args!(
+        "{}: {runs_on}, noise floor {floor:.5}",
+        names.join(", ")
+    ));
+    report.result("files", names);
+    report.result("trade", found);
+    Ok(())
+}
+
+/// Replaces the times by those of the GPU, if that is the device; tells whether it did.
+fn time_on_gpu(
+    scene: &Scene,
+    methods: &mut [Measurement],
+    report: &Report,
+) -> Result<bool, Mistake> {
+    let Device::Gpu(gpu) = &scene.device else {
+        return Ok(false);
+    };
+    let failed = |error| Mistake::usage("device-failed", error);
+    for measurement in methods.iter_mut() {
+        let program = scene.texture.compile(&scene.options(measurement.method));
+        let pipeline = gpu.pipeline(&program).map_err(failed)?;
+        gpu.set_parameters(&pipeline, &scene.parameters)
+            .map_err(failed)?;
+        let mut best = f64::INFINITY;
+        for _ in 0..3 {
+            let work = |job: Job<'_>| gpu.render(&pipeline, &scene.view, scene.size, job);
+            let label = measurement.method.to_string();
+            let (_, timing) = progress::watch(report, &label, work).map_err(failed)?;
+            best = best.min(timing.best().as_secs_f64() / timing.footprints.max(1) as f64);
+        }
+        measurement.seconds = best;
+    }
+    let point = methods
+        .iter()
+        .find(|m| m.method == Method::Point)
+        .map_or(1.0, |m| m.seconds);
+    for measurement in methods {
+        measurement.cost = measurement.seconds / point;
+    }
+    Ok(true)
+}
+
+/// The table for people.
+fn table(methods: &[Measurement], best: &[bool]) -> String {
+    let mut text = format!(
+        "{:<18}{:>10}{:>12}{:>14}\n",
+        "method", "error", "cost", "s/megapixel"
+    );
+    for (m, best) in methods.iter().zip(best) {
+        let star = if *best { "  best at its cost" } else { "" };
+        text += &format!(
+            "{:<18}{:>10.5}{:>10.1} ×{:>14.4}{star}\n",
+            m.method.to_string(),
+            m.error,
+            m.cost,
+            m.seconds * 1e6
+        );
+    }
+    text
+}
