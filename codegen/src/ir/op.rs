@@ -188,7 +188,6 @@ macro_rules! define_fold {
     ($($variant:ident $name:literal ($($p:ident: $pt:tt),*) -> $rt:tt { $cpu:expr } $wgsl:literal $error:literal $doc:literal;)*) => {
         /// The result's bits for operands of these bits: the f32 semantics of the op.
         pub(crate) fn fold_constants(op: Op, bits: [u32; 3]) -> u32 {
-            #[allow(unused_imports, reason = "only some rows use the trait's methods")]
             use crate::float::Float;
             type F = f32;
             let mut operands = bits.into_iter();
