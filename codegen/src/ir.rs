@@ -25,16 +25,16 @@
 
 mod build;
 mod op;
-mod table;
 #[cfg(test)]
 pub(crate) mod random;
+mod table;
 mod text;
 mod verify;
 
 pub use build::{Builder, FunctionRef};
+pub(crate) use op::for_each_op;
 pub use op::{Op, OpInfo};
 pub use table::{Numbers, Table};
-pub(crate) use op::for_each_op;
 pub use text::ParseError;
 pub use verify::{Violation, verify};
 
@@ -150,11 +150,18 @@ impl Inst {
         match self {
             Self::Const(_) | Self::Param(_) => {}
             Self::Op(op, operands) => {
-                operands[..op.info().operands.len()].iter().for_each(|&v| visit(v));
+                operands[..op.info().operands.len()]
+                    .iter()
+                    .for_each(|&v| visit(v));
             }
             Self::Load(_, index) => visit(*index),
             Self::Call(_, arguments) => arguments.iter().for_each(|&v| visit(v)),
-            Self::Fold { count, init, captures, .. } => {
+            Self::Fold {
+                count,
+                init,
+                captures,
+                ..
+            } => {
                 visit(*count);
                 init.iter().chain(captures).for_each(|&v| visit(v));
             }

@@ -16,7 +16,9 @@ use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
 };
 use crate::moments::{Algebra, Mode, Samples, Signal, Symbol};
-use mipless_graph::{Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type};
+use mipless_graph::{
+    Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
+};
 use rustc_hash::FxHashMap;
 use std::cell::RefCell;
 
@@ -47,7 +49,12 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { method: Method::Auto, filter: PixelFilter::default(), moments: false, seed: 0 }
+        Self {
+            method: Method::Auto,
+            filter: PixelFilter::default(),
+            moments: false,
+            seed: 0,
+        }
     }
 }
 
@@ -60,26 +67,53 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
     let interface = Interface {
         name: identifier(&graph.name),
         parameters: (graph.parameters.iter())
-            .map(|p| Port { name: p.name.clone(), ty: p.ty, default: p.value.numbers() })
+            .map(|p| Port {
+                name: p.name.clone(),
+                ty: p.ty,
+                default: p.value.numbers(),
+            })
             .collect(),
         outputs: (graph.outputs.iter())
-            .map(|o| Port { name: o.name.clone(), ty: o.ty, default: Vec::new() })
+            .map(|o| Port {
+                name: o.name.clone(),
+                ty: o.ty,
+                default: Vec::new(),
+            })
             .collect(),
         moments: options.moments,
     };
     let live = symbols::live(graph);
     let crossed = symbols::crossed(graph);
+    let literal = symbols::literal(graph);
     let (functions, fused) = (RefCell::default(), RefCell::default());
-    let compiler = Compiler { graph, catalogue, options, live, crossed, functions, fused };
+    let compiler = Compiler {
+        graph,
+        catalogue,
+        options,
+        live,
+        crossed,
+        literal,
+        functions,
+        fused,
+    };
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
-    Program { module: module.pruned(), interface }
+    Program {
+        module: module.pruned(),
+        interface,
+    }
 }
 
 /// A lower-snake-case identifier from a graph's name.
 fn identifier(name: &str) -> String {
     let mut out: String = (name.chars())
-        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' })
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '_'
+            }
+        })
         .collect();
     if out.is_empty() || out.starts_with(|c: char| c.is_ascii_digit()) || out.starts_with('_') {
         out.insert_str(0, "texture");
@@ -113,6 +147,8 @@ struct Compiler<'a> {
     live: Vec<u32>,
     /// Whether components of each node's output are combined later.
     crossed: Vec<bool>,
+    /// Whether literals alone shape each node's output.
+    literal: Vec<bool>,
     /// The functions that nodes share, by their keys.
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
@@ -147,11 +183,18 @@ impl Arguments {
                 parameters.push(b.param(name, ty));
             }
         }
-        Self { footprint, parameters }
+        Self {
+            footprint,
+            parameters,
+        }
     }
 
     fn all(&self) -> Vec<Value> {
-        self.footprint.iter().chain(&self.parameters).copied().collect()
+        self.footprint
+            .iter()
+            .chain(&self.parameters)
+            .copied()
+            .collect()
     }
 }
 
@@ -175,12 +218,7 @@ pub struct Lower<'a> {
 }
 
 impl<'a> Lower<'a> {
-    fn new(
-        compiler: &'a Compiler<'a>,
-        module: &'a mut Module,
-        mut b: Builder,
-        mode: Mode,
-    ) -> Self {
+    fn new(compiler: &'a Compiler<'a>, module: &'a mut Module, mut b: Builder, mode: Mode) -> Self {
         let arguments = Arguments::declare(&mut b, compiler.graph);
         Self::with(compiler, module, Algebra::new(b, mode), arguments)
     }
@@ -250,10 +288,18 @@ impl<'a> Lower<'a> {
             self.algebra.shares = forks;
             let kept = forks.then(|| self.algebra.next_symbol());
             let definition = &self.compiler.catalogue[node.definition];
-            assert_eq!(definition.spec.name, node.spec.name, "the catalogue of the graph");
+            assert_eq!(
+                definition.spec.name, node.spec.name,
+                "the catalogue of the graph"
+            );
             self.algebra.bent = false;
             let mut bundle = (definition.lower)(self, node);
-            assert_eq!(bundle.len(), node.ty.components(), "components of {}", node.spec.name);
+            assert_eq!(
+                bundle.len(),
+                node.ty.components(),
+                "components of {}",
+                node.spec.name
+            );
             self.nonlinear |= self.algebra.bent;
             if let Some(fused) = self.fuse(index, node, &bundle) {
                 bundle = fused;
@@ -273,7 +319,8 @@ impl<'a> Lower<'a> {
             }
             let b = &mut self.algebra.b;
             let kept = kept.unwrap_or(Symbol(u32::MAX));
-            self.carriers.retire(b, &mut bundle, kept, self.compiler.crossed[index]);
+            self.carriers
+                .retire(b, &mut bundle, kept, self.compiler.crossed[index]);
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
@@ -305,7 +352,9 @@ impl<'a> Lower<'a> {
         let graph = self.compiler.graph;
         let (mut means, mut variances) = (Vec::new(), Vec::new());
         for output in &graph.outputs {
-            let bundle = self.bundles[output.node.index()].clone().expect("outputs are live");
+            let bundle = self.bundles[output.node.index()]
+                .clone()
+                .expect("outputs are live");
             for (i, signal) in bundle.iter().enumerate() {
                 let name = format!("{}_{i}", identifier(&output.name));
                 let b = &mut self.algebra.b;
@@ -341,7 +390,10 @@ impl<'a> Lower<'a> {
             return function.clone();
         }
         let function = build(self.module);
-        self.compiler.functions.borrow_mut().insert(key.to_owned(), function.clone());
+        self.compiler
+            .functions
+            .borrow_mut()
+            .insert(key.to_owned(), function.clone());
         function
     }
 
@@ -354,7 +406,10 @@ impl<'a> Lower<'a> {
         let zero = b.f32(0.0);
         [(cell_x, u, du_dx, du_dy), (cell_y, v, dv_dx, dv_dy)]
             .map(|(cell, fraction, x, y)| {
-                let start = Signal { cell: Some(cell), ..Signal::certain(b, zero) };
+                let start = Signal {
+                    cell: Some(cell),
+                    ..Signal::certain(b, zero)
+                };
                 let mut signal = start.offset(b, fraction);
                 if signal.cell.is_none() || b.is_zero(fraction) {
                     signal.cell = Some(cell);
@@ -376,7 +431,11 @@ impl<'a> Lower<'a> {
         let bundle = match &input.source {
             Source::Literal(literal) => {
                 let b = &mut self.algebra.b;
-                literal.numbers().into_iter().map(|x| Signal::constant(b, x)).collect()
+                literal
+                    .numbers()
+                    .into_iter()
+                    .map(|x| Signal::constant(b, x))
+                    .collect()
             }
             Source::Node(id) => self.output(*id),
             Source::Surface => self.surface(),
@@ -408,7 +467,9 @@ impl<'a> Lower<'a> {
     }
 
     fn output(&self, id: NodeId) -> Bundle {
-        self.bundles[id.index()].clone().expect("an input is lowered before its user")
+        self.bundles[id.index()]
+            .clone()
+            .expect("an input is lowered before its user")
     }
 
     /// Floats broadcast; a colour gains an alpha of 1.

@@ -85,7 +85,13 @@ pub struct Algebra {
 impl Algebra {
     /// An algebra that builds into `b`.
     pub fn new(b: Builder, mode: Mode) -> Self {
-        Self { b, mode, shares: false, bent: false, symbols: 0 }
+        Self {
+            b,
+            mode,
+            shares: false,
+            bent: false,
+            symbols: 0,
+        }
     }
 
     /// The symbol that [`Self::fresh_symbol`] gives next.

@@ -42,7 +42,7 @@ mod statement;
 
 pub use name::identifier;
 
-use crate::ir::{Numbers, FunctionId, Inst, Program, Type};
+use crate::ir::{FunctionId, Inst, Numbers, Program, Type};
 use entry::{Names, entry_text, face, push_entry_point, push_structs};
 use function::{Context, Signature, is_packed};
 use name::{Scope, camel};
@@ -185,7 +185,10 @@ pub struct Tables {
 impl Tables {
     /// All numbers, one table after the other.
     pub fn data(&self) -> Vec<f32> {
-        self.numbers.iter().flat_map(|numbers| numbers.iter().copied()).collect()
+        self.numbers
+            .iter()
+            .flat_map(|numbers| numbers.iter().copied())
+            .collect()
     }
 }
 

@@ -75,7 +75,10 @@ impl TextureEvaluator {
                 continue;
             }
             if numbers.len() != expected {
-                return Err(SetError::Components { expected, given: numbers.len() });
+                return Err(SetError::Components {
+                    expected,
+                    given: numbers.len(),
+                });
             }
             let min = parameter.min.unwrap_or(f32::MIN);
             let max = parameter.max.unwrap_or(f32::MAX);

@@ -8,7 +8,10 @@ use mipless_graph::{
 
 /// The specs of the catalogue.
 pub fn specs() -> Vec<&'static NodeSpec> {
-    crate::catalogue().iter().map(|definition| definition.spec).collect()
+    crate::catalogue()
+        .iter()
+        .map(|definition| definition.spec)
+        .collect()
 }
 
 /// A texture graph without mistakes.
@@ -43,7 +46,11 @@ impl Texture {
         match check(graph, options) {
             Ok(checked) => {
                 warnings.extend(checked.warnings().iter().cloned());
-                Ok(Self { checked, document, warnings })
+                Ok(Self {
+                    checked,
+                    document,
+                    warnings,
+                })
             }
             Err(mistakes) => {
                 warnings.extend(mistakes);

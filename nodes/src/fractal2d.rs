@@ -1,9 +1,7 @@
 //! `fractal2d`: a sum of octaves of lattice noise.
 
 use crate::noise::lattice::{self, Octaves};
-use crate::noise::source::{
-    AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped,
-};
+use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped};
 use crate::noise2d::DEVIATION;
 use mipless_codegen::NodeDef;
 use mipless_graph::{
@@ -58,7 +56,9 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::hard(0.0, 2.0).with_soft(0.0, 1.0)),
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian { deviation: DEVIATION },
+    class: |_| Behaviour::Gaussian {
+        deviation: DEVIATION,
+    },
     example: r#"{ "version": 1, "name": "smoke",
         "nodes": { "fractal2d": { "type": "fractal2d", "inputs": { "frequency": 4, "octaves": 5, "pivot": 0.5 } } },
         "outputs": { "out": { "node": "fractal2d" } } }"#,

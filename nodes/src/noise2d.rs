@@ -1,9 +1,7 @@
 //! `noise2d`: lattice noise, filtered exactly for any footprint.
 
 use crate::noise::lattice::{self, Octaves};
-use crate::noise::source::{
-    AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped,
-};
+use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped};
 use mipless_codegen::NodeDef;
 use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Type};
 
@@ -12,7 +10,13 @@ pub(crate) const DEVIATION: f32 = 0.0046;
 
 static SPEC: NodeSpec = NodeSpec {
     name: "noise2d",
-    aliases: &["perlin", "perlin noise", "gradientnoise", "gradient noise", "noise"],
+    aliases: &[
+        "perlin",
+        "perlin noise",
+        "gradientnoise",
+        "gradient noise",
+        "noise",
+    ],
     category: Category::Noise,
     summary: "Band-limited lattice noise, filtered exactly for any footprint.",
     doc: Doc {
@@ -32,7 +36,9 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, KERNEL],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian { deviation: DEVIATION },
+    class: |_| Behaviour::Gaussian {
+        deviation: DEVIATION,
+    },
     example: r#"{ "version": 1, "name": "clouds",
         "nodes": { "noise2d": { "type": "noise2d", "inputs": { "frequency": 8, "pivot": 0.5 } } },
         "outputs": { "out": { "node": "noise2d" } } }"#,

@@ -9,18 +9,32 @@ fn evaluate(json: &str, method: Method, footprints: &[Footprint]) -> Vec<[f64; 2
     let catalogue = mipless_nodes::catalogue();
     let specs: Vec<_> = catalogue.iter().map(|d| d.spec).collect();
     let loaded = load(json, &specs);
-    let graph = loaded.graph.unwrap_or_else(|| panic!("{:?}", loaded.diagnostics));
+    let graph = loaded
+        .graph
+        .unwrap_or_else(|| panic!("{:?}", loaded.diagnostics));
     let checked = check(graph, &CheckOptions::default()).expect("checks");
-    let options = Options { method, filter: PixelFilter::Gaussian(1.0), moments: true, seed: 0 };
+    let options = Options {
+        method,
+        filter: PixelFilter::Gaussian(1.0),
+        moments: true,
+        seed: 0,
+    };
     let program = compile(&checked, catalogue, &options);
     let out = eval_program::<f64>(&program, footprints, &[]);
-    (0..footprints.len()).map(|i| [out[0][i], out.get(1).map_or(0.0, |v| v[i])]).collect()
+    (0..footprints.len())
+        .map(|i| [out[0][i], out.get(1).map_or(0.0, |v| v[i])])
+        .collect()
 }
 
 /// A small deterministic stream of uniform numbers.
 fn positions(count: usize) -> Vec<[f64; 2]> {
     (0..count)
-        .map(|i| [(i as f64 * 0.754_877_666).fract() * 40.0 + 3.0, (i as f64 * 0.569_840_29).fract() * 40.0 + 7.0])
+        .map(|i| {
+            [
+                (i as f64 * 0.754_877_666).fract() * 40.0 + 3.0,
+                (i as f64 * 0.569_840_29).fract() * 40.0 + 7.0,
+            ]
+        })
         .collect()
 }
 
@@ -36,14 +50,28 @@ fn truth(json: &str, at: [f64; 2], axes: [[f64; 2]; 2]) -> [f64; 2] {
             let p = [0, 1].map(|k| at[k] + axes[0][k] * z[0] + axes[1][k] * z[1]);
             let cell = p.map(|x| x.floor() as i32);
             let uv = [0, 1].map(|k| (p[k] - p[k].floor()) as f32);
-            footprints.push(Footprint { cell, uv, du: [0.0; 2], dv: [0.0; 2] });
+            footprints.push(Footprint {
+                cell,
+                uv,
+                du: [0.0; 2],
+                dv: [0.0; 2],
+            });
         }
     }
     let values = evaluate(json, Method::Point, &footprints);
     let total: f64 = weights.iter().sum();
-    let mean = values.iter().zip(&weights).map(|(v, w)| v[0] * w).sum::<f64>() / total;
-    let variance =
-        values.iter().zip(&weights).map(|(v, w)| (v[0] - mean).powi(2) * w).sum::<f64>() / total;
+    let mean = values
+        .iter()
+        .zip(&weights)
+        .map(|(v, w)| v[0] * w)
+        .sum::<f64>()
+        / total;
+    let variance = values
+        .iter()
+        .zip(&weights)
+        .map(|(v, w)| (v[0] - mean).powi(2) * w)
+        .sum::<f64>()
+        / total;
     [mean, variance]
 }
 
@@ -56,7 +84,10 @@ fn noise_has_its_standard_deviation() {
         let footprints: Vec<Footprint> = (0..40_000)
             .map(|i| Footprint {
                 cell: [(i % 200) * 3, (i / 200) * 3],
-                uv: [(i as f32 * 0.754_877_7).fract(), (i as f32 * 0.569_840_3).fract()],
+                uv: [
+                    (i as f32 * 0.754_877_7).fract(),
+                    (i as f32 * 0.569_840_3).fract(),
+                ],
                 du: [0.0; 2],
                 dv: [0.0; 2],
             })
@@ -91,9 +122,21 @@ fn filtered() {
                 for method in [Method::Ensemble, Method::Local, Method::Quad] {
                     let values = evaluate(json, method, &footprints);
                     let n = at.len() as f64;
-                    let mean = (values.iter().zip(&truths).map(|(v, t)| (v[0] - t[0]).powi(2)).sum::<f64>() / n).sqrt();
+                    let mean = (values
+                        .iter()
+                        .zip(&truths)
+                        .map(|(v, t)| (v[0] - t[0]).powi(2))
+                        .sum::<f64>()
+                        / n)
+                        .sqrt();
                     let sd: f64 = truths.iter().map(|t| t[1].sqrt()).sum::<f64>() / n;
-                    let off = values.iter().zip(&truths).map(|(v, t)| (v[1].sqrt() - t[1].sqrt()).abs()).sum::<f64>() / n / sd;
+                    let off = values
+                        .iter()
+                        .zip(&truths)
+                        .map(|(v, t)| (v[1].sqrt() - t[1].sqrt()).abs())
+                        .sum::<f64>()
+                        / n
+                        / sd;
                     line += &format!("  {method} mean {mean:.4} sd {off:.3}");
                 }
                 println!("{line}");

@@ -16,7 +16,11 @@ const RUNS: usize = 200;
 fn graph(count: usize) -> String {
     let mut nodes = String::new();
     for i in 0..count / 10 {
-        let before = if i == 0 { r#"[0.2, 0.3, 0.4]"#.to_owned() } else { format!(r#"{{"node":"mix{}"}}"#, i - 1) };
+        let before = if i == 0 {
+            r#"[0.2, 0.3, 0.4]"#.to_owned()
+        } else {
+            format!(r#"{{"node":"mix{}"}}"#, i - 1)
+        };
         write!(
             nodes,
             r#""place{i}":{{"type":"place2d","inputs":{{"scale":[0.5,{scale}],"rotate":{i}}}}},
@@ -45,7 +49,9 @@ fn main() {
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
-    println!("| nodes | JSON to WGSL, ms | per 100 nodes, ms | of it JSON to checked graph, ms | WGSL, KB | naga, ms |");
+    println!(
+        "| nodes | JSON to WGSL, ms | per 100 nodes, ms | of it JSON to checked graph, ms | WGSL, KB | naga, ms |"
+    );
     println!("|---|---|---|---|---|---|");
     for count in [10, 100, 1_000, 10_000] {
         let json = graph(count);

@@ -63,8 +63,10 @@ fn main() {
                 r#"{{"version":1,"name":"ladder","nodes":{{"n":{{"type":"{source}","inputs":{{"amplitude":4,"frequency":{frequency}}}}},{map}}},"outputs":{{"out":{{"node":"o"}}}}}}"#
             ))
             .expect("the graph has no mistakes");
-            let squares: Vec<Vec<f64>> =
-                SIZES.par_iter().map(|&size| errors(&texture, size, range)).collect();
+            let squares: Vec<Vec<f64>> = SIZES
+                .par_iter()
+                .map(|&size| errors(&texture, size, range))
+                .collect();
             let totals: Vec<String> = (0..METHODS.len())
                 .map(|i| {
                     let mean = squares.iter().map(|s| s[i]).sum::<f64>() / SIZES.len() as f64;
@@ -92,7 +94,11 @@ fn errors(texture: &Texture, size: f32, range: f32) -> Vec<f64> {
         .collect();
     let run = |method| {
         let filter = PixelFilter::Gaussian(1.0);
-        let program = texture.compile(&Options { method, filter, ..Options::default() });
+        let program = texture.compile(&Options {
+            method,
+            filter,
+            ..Options::default()
+        });
         let mut outputs = Vec::new();
         let evaluator = Evaluator::<f32>::of_program(&program);
         evaluator.evaluate_footprints(&mut Scratch::new(), &footprints, &[], &mut outputs);
@@ -103,7 +109,12 @@ fn errors(texture: &Texture, size: f32, range: f32) -> Vec<f64> {
     (METHODS.iter())
         .map(|&method| {
             let values = run(method);
-            values.iter().zip(&truth).map(|(&a, &b)| square(a, b)).sum::<f64>() / PIXELS as f64
+            values
+                .iter()
+                .zip(&truth)
+                .map(|(&a, &b)| square(a, b))
+                .sum::<f64>()
+                / PIXELS as f64
         })
         .collect()
 }

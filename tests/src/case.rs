@@ -26,7 +26,11 @@ impl Case {
             let mistakes: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
             panic!("{name} has mistakes:\n{}", mistakes.join("\n"))
         });
-        Self { name, text, texture }
+        Self {
+            name,
+            text,
+            texture,
+        }
     }
 }
 
@@ -39,7 +43,10 @@ pub fn graphs() -> Vec<Case> {
     let mut files: Vec<_> = fs::read_dir(&folder)
         .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
         .map(|entry| entry.expect("an entry of graphs/").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "json")
+        })
         .collect();
     files.sort();
     (files.iter())
@@ -57,7 +64,9 @@ pub fn graphs() -> Vec<Case> {
 /// If one has mistakes.
 pub fn examples() -> Vec<Case> {
     let nodes = mipless::catalogue().iter();
-    nodes.map(|def| Case::new(format!("example_{}", def.spec.name), def.spec.example)).collect()
+    nodes
+        .map(|def| Case::new(format!("example_{}", def.spec.name), def.spec.example))
+        .collect()
 }
 
 /// All graphs, then all examples.

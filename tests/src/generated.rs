@@ -21,7 +21,9 @@ pub fn compare(path: &str, wanted: &str) -> Result<(), String> {
         fs::write(&file, wanted).expect("the file is written");
         return Ok(());
     }
-    Err(format!("{path} is stale: MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy"))
+    Err(format!(
+        "{path} is stale: MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy"
+    ))
 }
 
 /// The names of the files of a folder that end as given, sorted; none if there is no such folder.
@@ -29,9 +31,17 @@ pub fn compare(path: &str, wanted: &str) -> Result<(), String> {
 /// # Panics
 /// If an entry cannot be read.
 pub fn names(folder: &Path, ending: &str) -> Vec<String> {
-    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
     let mut names: Vec<String> = entries
-        .map(|entry| entry.expect("a readable entry").file_name().to_string_lossy().into_owned())
+        .map(|entry| {
+            entry
+                .expect("a readable entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
         .filter(|name| name.ends_with(ending))
         .collect();
     names.sort();

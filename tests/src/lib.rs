@@ -23,7 +23,10 @@ use std::path::PathBuf;
 /// The root of the workspace.
 pub fn root() -> PathBuf {
     let tests = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    tests.parent().expect("the suite lies in the workspace").to_owned()
+    tests
+        .parent()
+        .expect("the suite lies in the workspace")
+        .to_owned()
 }
 
 /// Every kind of method, the ones with a number at the least that shows what they do.
@@ -50,5 +53,9 @@ pub fn asked(variable: &str) -> bool {
 
 /// How many random cases a test tries: `usual`, or ten times as many where `MIPLESS_LONG` is set.
 pub fn cases(usual: u32) -> u32 {
-    if asked("MIPLESS_LONG") { 10 * usual } else { usual }
+    if asked("MIPLESS_LONG") {
+        10 * usual
+    } else {
+        usual
+    }
 }

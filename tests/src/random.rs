@@ -68,8 +68,14 @@ mod tests {
     #[test]
     fn normal_numbers_have_unit_variance() {
         let mut random = Random::new(1);
-        let squares: f64 = (0..50_000).flat_map(|_| random.normal_pair()).map(|x| x * x).sum();
+        let squares: f64 = (0..50_000)
+            .flat_map(|_| random.normal_pair())
+            .map(|x| x * x)
+            .sum();
         // The standard deviation of the mean of 100,000 squares is √(2/100,000).
-        assert!((squares / 1e5 - 1.0).abs() < 5.0 * (2.0_f64 / 1e5).sqrt(), "{squares}");
+        assert!(
+            (squares / 1e5 - 1.0).abs() < 5.0 * (2.0_f64 / 1e5).sqrt(),
+            "{squares}"
+        );
     }
 }

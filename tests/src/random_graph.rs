@@ -96,7 +96,11 @@ fn pick<'a>(
     fits: impl Fn(Type) -> bool,
 ) -> Option<&'a Made> {
     let fitting: Vec<&Made> = made.iter().filter(|made| fits(made.ty)).collect();
-    if fitting.is_empty() { None } else { Some(fitting[random.below(fitting.len())]) }
+    if fitting.is_empty() {
+        None
+    } else {
+        Some(fitting[random.below(fitting.len())])
+    }
 }
 
 /// Sorted stops, sometimes two in one place.
@@ -109,7 +113,11 @@ fn random_stops(random: &mut Random, colors: bool) -> Value {
     }
     let stop = |&at: &f64| {
         let mut unit = || (1000.0 * random.unit()).round() / 1000.0;
-        let value = if colors { json!([unit(), unit(), unit()]) } else { json!(unit()) };
+        let value = if colors {
+            json!([unit(), unit(), unit()])
+        } else {
+            json!(unit())
+        };
         json!({ "at": at, "value": value })
     };
     places.iter().map(stop).collect()
@@ -135,5 +143,9 @@ fn number(random: &mut Random, port: &PortSpec) -> f64 {
         _ => random.within(low, high),
     };
     let x = x.clamp(f64::from(range.min), f64::from(range.max));
-    if range.nonzero && x.abs() < 1e-3 { high.max(1.0) } else { x }
+    if range.nonzero && x.abs() < 1e-3 {
+        high.max(1.0)
+    } else {
+        x
+    }
 }

@@ -54,8 +54,16 @@ mod tests {
     #[test]
     fn p_values_bound_the_normal_tail_closely() {
         // 2(1 − Φ(3)) = 0.0026998, 2(1 − Φ(5)) = 5.7330e-7.
-        assert!((0.002_699_8..0.003).contains(&p_value(3.0)), "{}", p_value(3.0));
-        assert!((5.733e-7..5.97e-7).contains(&p_value(-5.0)), "{}", p_value(-5.0));
+        assert!(
+            (0.002_699_8..0.003).contains(&p_value(3.0)),
+            "{}",
+            p_value(3.0)
+        );
+        assert!(
+            (5.733e-7..5.97e-7).contains(&p_value(-5.0)),
+            "{}",
+            p_value(-5.0)
+        );
         assert_eq!(p_value(0.0), 1.0);
     }
 }

@@ -22,14 +22,19 @@ fn main() {
     if let Ok(gpu) = &gpu {
         report(&format!("adapter {}", gpu.report()));
     }
-    let none = matches!(gpu.as_ref().err().map(Arc::as_ref), Some(GpuError::NoAdapter(_)));
+    let none = matches!(
+        gpu.as_ref().err().map(Arc::as_ref),
+        Some(GpuError::NoAdapter(_))
+    );
     let ignored = none && !asked("MIPLESS_REQUIRE_GPU");
     let mut trials = Vec::new();
     for case in all().into_iter().map(Arc::new) {
         for method in METHODS {
             let name = format!("{}_{}", case.name, name_of(method));
             let on_cpu = Arc::clone(&case);
-            trials.push(Trial::test(format!("oracle_{name}"), move || oracle(&on_cpu, method)));
+            trials.push(Trial::test(format!("oracle_{name}"), move || {
+                oracle(&on_cpu, method)
+            }));
             let (on_device, gpu) = (Arc::clone(&case), gpu.clone());
             let run = move || device(gpu?.as_ref(), &on_device, method);
             trials.push(Trial::test(format!("device_{name}"), run).with_ignored_flag(ignored));
@@ -40,7 +45,9 @@ fn main() {
 
 /// A picture that recedes to the horizon, so that it holds footprints of every size, and a flat one.
 fn views() -> [View; 2] {
-    let flat = Flat { window: [-1.3, 0.2, 2.1, 2.7] };
+    let flat = Flat {
+        window: [-1.3, 0.2, 2.1, 2.7],
+    };
     [View::Plane(Plane::default()), View::Flat(flat)]
 }
 
@@ -49,7 +56,11 @@ fn size() -> Size {
 }
 
 fn compile(case: &Case, method: Method) -> Program {
-    case.texture.compile(&Options { method, moments: true, ..Options::default() })
+    case.texture.compile(&Options {
+        method,
+        moments: true,
+        ..Options::default()
+    })
 }
 
 fn render<F: mipless_codegen::float::Float>(program: &Program, view: &View) -> Image<F> {
@@ -60,7 +71,11 @@ fn render<F: mipless_codegen::float::Float>(program: &Program, view: &View) -> I
 /// The difference of two numbers relative to max(1, |wanted|); NaN agrees with nothing.
 fn difference(found: f64, wanted: f64) -> f64 {
     let difference = (found - wanted).abs() / wanted.abs().max(1.0);
-    if difference.is_nan() { f64::INFINITY } else { difference }
+    if difference.is_nan() {
+        f64::INFINITY
+    } else {
+        difference
+    }
 }
 
 /// For every pixel, the largest difference over the channels between f32 and the oracle.
@@ -95,7 +110,13 @@ fn oracle(case: &Case, method: Method) -> Result<(), Failed> {
         );
         report(&line);
         let sampled = matches!(method, Method::Supersample(_));
-        if share > if sampled { LEFT_OUT_OF_SAMPLES } else { LEFT_OUT } {
+        if share
+            > if sampled {
+                LEFT_OUT_OF_SAMPLES
+            } else {
+                LEFT_OUT
+            }
+        {
             failures.push(line);
         }
     }
@@ -111,7 +132,11 @@ fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
         let roundings = rounding(&single, &render(&program, &view));
         let (image, _) = gpu.render(&pipeline, &view, size(), Job::default())?;
         let (mut worst, mut place) = (0.0, String::new());
-        let channels = image.channels().iter().zip(single.channels()).zip(image.names());
+        let channels = image
+            .channels()
+            .iter()
+            .zip(single.channels())
+            .zip(image.names());
         for ((found, wanted), name) in channels {
             for (pixel, (&found, &wanted)) in found.iter().zip(wanted).enumerate() {
                 let difference = difference(found.into(), wanted.into());
@@ -121,7 +146,11 @@ fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
                 }
             }
         }
-        let line = format!("device {} {method} {}: {worst:.2e} {place}", case.name, view.name());
+        let line = format!(
+            "device {} {method} {}: {worst:.2e} {place}",
+            case.name,
+            view.name()
+        );
         report(&line);
         if worst > DEVICE {
             failures.push(line);
@@ -131,5 +160,9 @@ fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
 }
 
 fn verdict(failures: &[String]) -> Result<(), Failed> {
-    if failures.is_empty() { Ok(()) } else { Err(failures.join("\n").into()) }
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        Err(failures.join("\n").into())
+    }
 }

@@ -18,7 +18,11 @@ fn config(usual: u32) -> ProptestConfig {
     // The same cases in every run; what fails is printed whole.
     let rng_seed = RngSeed::Fixed(20_261);
     let failure_persistence = None;
-    ProptestConfig { rng_seed, failure_persistence, ..ProptestConfig::with_cases(cases(usual)) }
+    ProptestConfig {
+        rng_seed,
+        failure_persistence,
+        ..ProptestConfig::with_cases(cases(usual))
+    }
 }
 
 fn footprints() -> Vec<Footprint> {
@@ -27,20 +31,36 @@ fn footprints() -> Vec<Footprint> {
         let mut axis = || [0, 1].map(|_| random.within(-size, size) as f32);
         let (du, dv) = (axis(), axis());
         let cell = [0, 1].map(|_| random.within(-1e4, 1e4) as i32);
-        Footprint { cell, uv: [0, 1].map(|_| random.unit() as f32), du, dv }
+        Footprint {
+            cell,
+            uv: [0, 1].map(|_| random.unit() as f32),
+            du,
+            dv,
+        }
     };
-    [0.0, 1e-9, 1e-4, 0.01, 0.1, 1.0, 100.0, 1e9].map(&mut footprint).to_vec()
+    [0.0, 1e-9, 1e-4, 0.01, 0.1, 1.0, 100.0, 1e9]
+        .map(&mut footprint)
+        .to_vec()
 }
 
 /// Every method compiles the texture to valid IR and valid WGSL, and evaluates it to finite numbers.
 fn holds(texture: &Texture, text: &str) {
     for method in METHODS {
-        let options = Options { method, moments: true, ..Options::default() };
+        let options = Options {
+            method,
+            moments: true,
+            ..Options::default()
+        };
         let program = texture.compile(&options);
         if let Err(violations) = verify(&program.module) {
             panic!("{method}: {}\n{text}", violations[0]);
         }
-        let shader = emit(&program, &Emission { entry: Entry::Compute });
+        let shader = emit(
+            &program,
+            &Emission {
+                entry: Entry::Compute,
+            },
+        );
         if let Err(error) = validate(&shader.source) {
             panic!("{method}: {error}\n{text}");
         }
@@ -56,7 +76,11 @@ fn located(mistakes: &[Diagnostic], text: &str) {
     for mistake in mistakes {
         let line = mistake.line.is_some() || mistake.pointer.is_some();
         assert!(line, "{mistake} stands nowhere:\n{text}");
-        assert!(!mistake.message.is_empty(), "{} says nothing:\n{text}", mistake.code);
+        assert!(
+            !mistake.message.is_empty(),
+            "{} says nothing:\n{text}",
+            mistake.code
+        );
     }
 }
 
@@ -68,7 +92,10 @@ fn random_graphs_mostly_pass_the_check() {
         Texture::from_json(&text).is_ok()
     });
     // The others divide by a signal, or something of that kind.
-    assert!(accepted.count() >= 50, "the random graphs are hardly ever graphs");
+    assert!(
+        accepted.count() >= 50,
+        "the random graphs are hardly ever graphs"
+    );
 }
 
 proptest! {
@@ -105,9 +132,25 @@ fn mutilate(value: &mut Value, random: &mut Random) {
         };
     }
     let odd = [
-        "null", "true", "-1", "0", "1e30", "1e-30", "3.5", "[]", "{}", "[1, 2, 3]", "\"#ff0000\"",
-        "\"noise2d\"", "{ \"node\": \"none\" }", "{ \"input\": \"none\" }", "[[[]]]", "\"\"",
-        "9007199254740993", "[1e38, -1e38]", "{ \"type\": \"noise2d\" }",
+        "null",
+        "true",
+        "-1",
+        "0",
+        "1e30",
+        "1e-30",
+        "3.5",
+        "[]",
+        "{}",
+        "[1, 2, 3]",
+        "\"#ff0000\"",
+        "\"noise2d\"",
+        "{ \"node\": \"none\" }",
+        "{ \"input\": \"none\" }",
+        "[[[]]]",
+        "\"\"",
+        "9007199254740993",
+        "[1e38, -1e38]",
+        "{ \"type\": \"noise2d\" }",
     ];
     let odd: Value = serde_json::from_str(odd[random.below(odd.len())]).expect("JSON");
     match (random.below(4), place) {
@@ -116,7 +159,9 @@ fn mutilate(value: &mut Value, random: &mut Random) {
             members.remove(&key.expect("a key"));
         }
         (1, Value::Object(members)) => {
-            let keys = ["in", "in1", "type", "nodes", "value", "extra", "seed", "odd", "doc"];
+            let keys = [
+                "in", "in1", "type", "nodes", "value", "extra", "seed", "odd", "doc",
+            ];
             members.insert((*random.choose(&keys)).to_owned(), odd);
         }
         (2, Value::Array(members)) => members.push(odd),

@@ -23,8 +23,14 @@ struct Compiler {
 }
 
 const COMPILERS: [Compiler; 2] = [
-    Compiler { program: "spirv-val", target: Target::Spirv },
-    Compiler { program: "glslangValidator", target: Target::Glsl },
+    Compiler {
+        program: "spirv-val",
+        target: Target::Spirv,
+    },
+    Compiler {
+        program: "glslangValidator",
+        target: Target::Glsl,
+    },
 ];
 
 fn main() {
@@ -34,14 +40,22 @@ fn main() {
     let mut trials = Vec::new();
     for case in &cases {
         for method in METHODS {
-            let (name, case) = (format!("{}_{}", case.name, name_of(method)), Arc::clone(case));
-            trials.push(Trial::test(format!("targets_{name}"), move || targets(&case, method)));
+            let (name, case) = (
+                format!("{}_{}", case.name, name_of(method)),
+                Arc::clone(case),
+            );
+            trials.push(Trial::test(format!("targets_{name}"), move || {
+                targets(&case, method)
+            }));
         }
     }
     for compiler in COMPILERS {
         let missing = !is_installed(compiler.program);
         for case in &cases {
-            let (name, case) = (format!("{}_{}", compiler.program, case.name), Arc::clone(case));
+            let (name, case) = (
+                format!("{}_{}", compiler.program, case.name),
+                Arc::clone(case),
+            );
             let trial = Trial::test(name, move || compile(&case, compiler));
             trials.push(trial.with_ignored_flag(missing && !required));
         }
@@ -58,7 +72,10 @@ fn is_installed(program: &str) -> bool {
 }
 
 fn targets(case: &Case, method: Method) -> Result<(), Failed> {
-    let program = case.texture.compile(&Options { method, ..Options::default() });
+    let program = case.texture.compile(&Options {
+        method,
+        ..Options::default()
+    });
     for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
         let shader = emit(&program, &Emission { entry });
         let longest = longest_function(&shader.source);
@@ -66,7 +83,10 @@ fn targets(case: &Case, method: Method) -> Result<(), Failed> {
         assert!(longest <= 300, "a function of {longest} statements");
         if entry == Entry::None {
             validate(&shader.source)?;
-            assert!(!shader.source.contains("dpdx"), "a derivative outside of a fragment shader");
+            assert!(
+                !shader.source.contains("dpdx"),
+                "a derivative outside of a fragment shader"
+            );
             let refused = translate(&shader, Target::Spirv);
             assert_eq!(refused, Err(TranslateError::NeedsEntry(Target::Spirv)));
         }
@@ -94,12 +114,20 @@ fn longest_function(source: &str) -> usize {
 fn compile(case: &Case, compiler: Compiler) -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     for method in METHODS {
-        let program = case.texture.compile(&Options { method, ..Options::default() });
-        for (entry, stage) in [(Entry::Fragment, Stage::Fragment), (Entry::Compute, Stage::Compute)] {
+        let program = case.texture.compile(&Options {
+            method,
+            ..Options::default()
+        });
+        for (entry, stage) in [
+            (Entry::Fragment, Stage::Fragment),
+            (Entry::Compute, Stage::Compute),
+        ] {
             let shader = emit(&program, &Emission { entry });
             let translated = translate(&shader, compiler.target)?;
             let extension = compiler.target.extension(Some(stage));
-            let file = folder.path().join(format!("{}.{extension}", name_of(method)));
+            let file = folder
+                .path()
+                .join(format!("{}.{extension}", name_of(method)));
             fs::write(&file, translated)?;
             accepts(compiler, &file).map_err(|error| format!("{method}, {stage:?}: {error}"))?;
         }

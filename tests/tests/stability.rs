@@ -5,15 +5,28 @@ use mipless::{Footprint, Literal, Method, Options, Texture};
 use mipless_codegen::cpu::eval_program;
 use mipless_tests::case::all;
 use mipless_tests::random::Random;
-use mipless_tests::tolerance::{FAR_FIELD, FAR_FIELD_OF_WAVES, LEFT_OUT, RANGE, SIGNIFICANCE, VANISHING, p_value};
+use mipless_tests::tolerance::{
+    FAR_FIELD, FAR_FIELD_OF_WAVES, LEFT_OUT, RANGE, SIGNIFICANCE, VANISHING, p_value,
+};
 use mipless_tests::{METHODS, name_of};
 
 /// Methods that filter.
-const FILTERS: [Method; 5] =
-    [Method::Ensemble, Method::Local, Method::Quad, Method::Auto, Method::Split(4)];
+const FILTERS: [Method; 5] = [
+    Method::Ensemble,
+    Method::Local,
+    Method::Quad,
+    Method::Auto,
+    Method::Split(4),
+];
 
 fn evaluate(texture: &Texture, method: Method, footprints: &[Footprint]) -> Vec<Vec<f32>> {
-    texture.evaluator(&Options { method, moments: true, ..Options::default() }).evaluate(footprints)
+    texture
+        .evaluator(&Options {
+            method,
+            moments: true,
+            ..Options::default()
+        })
+        .evaluate(footprints)
 }
 
 /// All pairs of extreme positions and extreme footprints.
@@ -30,7 +43,9 @@ fn extremes() -> Vec<Footprint> {
         ([3, 4], [0.5, -infinity]),
     ];
     let mut shapes: Vec<([f32; 2], [f32; 2])> = Vec::new();
-    for size in [0.0, 1e-40, 1e-30, 1e-12, 1e-6, 1e-3, 0.05, 0.4, 2.0, 1e3, 1e9, 1e30, 3e38] {
+    for size in [
+        0.0, 1e-40, 1e-30, 1e-12, 1e-6, 1e-3, 0.05, 0.4, 2.0, 1e3, 1e9, 1e30, 3e38,
+    ] {
         // Round, a line, and a line that is not parallel to an axis.
         shapes.push(([size, 0.0], [0.0, size]));
         shapes.push(([size, 0.0], [0.0, 0.0]));
@@ -47,7 +62,11 @@ fn extremes() -> Vec<Footprint> {
         shapes.push(([0.1, odd], [0.0, 0.1]));
     }
     (places.iter())
-        .flat_map(|&(cell, uv)| shapes.iter().map(move |&(du, dv)| Footprint { cell, uv, du, dv }))
+        .flat_map(|&(cell, uv)| {
+            shapes
+                .iter()
+                .map(move |&(du, dv)| Footprint { cell, uv, du, dv })
+        })
         .collect()
 }
 
@@ -92,7 +111,11 @@ fn extreme_footprints_give_finite_numbers_in_range() {
                 let slack = |bound: f64| RANGE * bound.abs().max(1.0);
                 let mut wrong = output.iter().zip(&footprints).filter(|&(&x, _)| {
                     let x = f64::from(x);
-                    let loose = if channel < ranges.len() { slack(low) } else { 0.0 };
+                    let loose = if channel < ranges.len() {
+                        slack(low)
+                    } else {
+                        0.0
+                    };
                     !(x >= low - loose && x <= high + slack(high) && x.is_finite())
                 });
                 if let Some((x, footprint)) = wrong.next() {
@@ -118,19 +141,40 @@ fn what_the_entry_calls_is_finite_by_itself() {
     let footprints: Vec<Footprint> = extremes().iter().filter(regular).copied().collect();
     assert!(footprints.len() > 100);
     for case in all() {
-        for method in [Method::Point, Method::Naive, Method::Ensemble, Method::Local, Method::Quad] {
-            let options = Options { method, moments: true, ..Options::default() };
+        for method in [
+            Method::Point,
+            Method::Naive,
+            Method::Ensemble,
+            Method::Local,
+            Method::Quad,
+        ] {
+            let options = Options {
+                method,
+                moments: true,
+                ..Options::default()
+            };
             let mut program = case.texture.compile(&options);
             program.module.functions.pop();
             let called = program.module.entry();
-            assert!(called.name.ends_with(&format!("_{method}")), "{} is called", called.name);
-            let defaults = program.interface.parameters.iter().flat_map(|p| p.default.clone());
+            assert!(
+                called.name.ends_with(&format!("_{method}")),
+                "{} is called",
+                called.name
+            );
+            let defaults = program
+                .interface
+                .parameters
+                .iter()
+                .flat_map(|p| p.default.clone());
             let parameters: Vec<f32> = defaults.collect();
             let outputs = eval_program::<f32>(&program, &footprints, &parameters);
             for (channel, output) in outputs.iter().enumerate() {
                 if let Some(lane) = output.iter().position(|x| !x.is_finite()) {
                     let (x, at) = (output[lane], footprints[lane]);
-                    panic!("{} by {method}, channel {channel}: {x} at {at:?}", case.name);
+                    panic!(
+                        "{} by {method}, channel {channel}: {x} at {at:?}",
+                        case.name
+                    );
                 }
             }
         }
@@ -166,17 +210,23 @@ fn a_vanishing_footprint_gives_the_point_value() {
         let wanted = evaluate(&case.texture, Method::Point, &points);
         for method in METHODS {
             for size in [0.0, 1e-30, 1e-12] {
-                let shape = |&point: &Footprint| Footprint { du: [size, 0.0], dv: [0.0, size], ..point };
+                let shape = |&point: &Footprint| Footprint {
+                    du: [size, 0.0],
+                    dv: [0.0, size],
+                    ..point
+                };
                 let footprints: Vec<Footprint> = points.iter().map(shape).collect();
                 let found = evaluate(&case.texture, method, &footprints);
                 for channel in 0..components {
                     let pairs = found[channel].iter().zip(&wanted[channel]);
                     let beyond = |(&a, &b): (&f32, &f32)| {
                         let off = f64::from((a - b).abs());
-                        !(off <= VANISHING * f64::from(b.abs()).max(1.0))
+                        off.is_nan() || off > VANISHING * f64::from(b.abs()).max(1.0)
                     };
-                    let wrong: Vec<_> =
-                        pairs.zip(&footprints).filter(|&(pair, _)| beyond(pair)).collect();
+                    let wrong: Vec<_> = pairs
+                        .zip(&footprints)
+                        .filter(|&(pair, _)| beyond(pair))
+                        .collect();
                     // Points within a rounding of an edge.
                     if wrong.len() as f64 > LEFT_OUT * points.len() as f64 {
                         let ((a, b), footprint) = wrong[0];
@@ -200,14 +250,20 @@ fn a_huge_footprint_gives_the_mean_of_the_far_field() {
     let spread = 2_000.0;
     let pixel = (2.0 * spread) as f32;
     let points = positions(40_000, spread);
-    let huge = [Footprint { du: [pixel, 0.0], dv: [0.0, pixel], ..at(0.0, 0.0) }];
+    let huge = [Footprint {
+        du: [pixel, 0.0],
+        dv: [0.0, pixel],
+        ..at(0.0, 0.0)
+    }];
     let mut failures = Vec::new();
     let cases = all();
     let channels: usize = cases.iter().map(|case| ranges(&case.texture).len()).sum();
     let level = SIGNIFICANCE / (channels * FILTERS.len()) as f64;
     for case in cases {
         let nodes = &case.texture.checked().graph().nodes;
-        let waves = nodes.iter().any(|node| ["sin", "stripes"].contains(&node.spec.name));
+        let waves = nodes
+            .iter()
+            .any(|node| ["sin", "stripes"].contains(&node.spec.name));
         let allowed: Vec<f64> = (case.texture.outputs().iter())
             .flat_map(|output| {
                 let signal = case.texture.checked().signal(output.node);
@@ -224,7 +280,8 @@ fn a_huge_footprint_gives_the_mean_of_the_far_field() {
                 let n = points.len() as f64;
                 let mean = samples.clone().sum::<f64>() / n;
                 let variance = samples.clone().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
-                let range = samples.clone().fold(f64::MIN, f64::max) - samples.fold(f64::MAX, f64::min);
+                let range =
+                    samples.clone().fold(f64::MIN, f64::max) - samples.fold(f64::MAX, f64::min);
                 let off = (f64::from(found[channel][0]) - mean).abs();
                 let error = (variance / n).sqrt().max(1e-6 * mean.abs().max(1.0));
                 let beyond = (off - allowed * range).max(0.0);

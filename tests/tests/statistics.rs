@@ -16,16 +16,28 @@ struct Noise {
 }
 
 const NOISES: [Noise; 5] = [
-    Noise { node: "noise2d", parameters: "", variance: 1.0 },
+    Noise {
+        node: "noise2d",
+        parameters: "",
+        variance: 1.0,
+    },
     // Σ (1/4)ᵏ over five octaves.
-    Noise { node: "fractal2d", parameters: r#", "octaves": 5"#, variance: 1.332_031_25 },
+    Noise {
+        node: "fractal2d",
+        parameters: r#", "octaves": 5"#,
+        variance: 1.332_031_25,
+    },
     // Σ (0.64)ᵏ over three octaves.
     Noise {
         node: "fractal2d",
         parameters: r#", "octaves": 3, "lacunarity": 2.7, "diminish": 0.8"#,
         variance: 2.0496,
     },
-    Noise { node: "spectralnoise2d", parameters: "", variance: 1.0 },
+    Noise {
+        node: "spectralnoise2d",
+        parameters: "",
+        variance: 1.0,
+    },
     Noise {
         node: "spectralnoise2d",
         parameters: r#", "waves": 64, "bandwidth": 0.25"#,
@@ -40,7 +52,9 @@ const TESTS: f64 = NOISES.len() as f64 * (2.0 + 3.0 + 2.0) + 2.0;
 
 impl Noise {
     fn texture(&self, seed: u32) -> Texture {
-        let Self { node, parameters, .. } = self;
+        let Self {
+            node, parameters, ..
+        } = self;
         let text = format!(
             r#"{{ "version": 1, "name": "noise", "nodes": {{ "n": {{ "type": "{node}", "inputs":
                {{ "amplitude": 4, "pivot": {PIVOT}, "seed": {seed}{parameters} }} }} }},
@@ -57,7 +71,10 @@ impl Noise {
             ..Footprint::default()
         };
         let footprints: Vec<Footprint> = points.iter().map(footprint).collect();
-        let options = Options { method: Method::Point, ..Options::default() };
+        let options = Options {
+            method: Method::Point,
+            ..Options::default()
+        };
         let values = self.texture(seed).evaluator(&options).evaluate(&footprints);
         values[0].iter().map(|&x| f64::from(x) - PIVOT).collect()
     }
@@ -69,7 +86,9 @@ impl Noise {
 
 fn points(seed: u64, count: usize) -> Vec<[f64; 2]> {
     let mut random = Random::new(seed);
-    (0..count).map(|_| [0, 1].map(|_| random.within(-30_000.0, 30_000.0))).collect()
+    (0..count)
+        .map(|_| [0, 1].map(|_| random.within(-30_000.0, 30_000.0)))
+        .collect()
 }
 
 fn mean(numbers: &[f64]) -> f64 {
@@ -83,7 +102,10 @@ fn holds_zero_mean(what: &str, numbers: &[f64]) {
     let z = average / (variance / n).sqrt();
     let p = p_value(z);
     println!("{what}: {average:.5}, z = {z:.2}, p = {p:.2e}");
-    assert!(p >= SIGNIFICANCE / TESTS, "{what}: off by {average}, z = {z}, p = {p:e}");
+    assert!(
+        p >= SIGNIFICANCE / TESTS,
+        "{what}: off by {average}, z = {z}, p = {p:e}"
+    );
 }
 
 #[test]
@@ -113,8 +135,11 @@ fn the_noises_look_the_same_in_all_directions() {
             let [along, others @ ..] = directions.map(|[dx, dy]| {
                 let moved: Vec<[f64; 2]> = points.iter().map(|[x, y]| [x + dx, y + dy]).collect();
                 let moved = noise.sample(seed, &moved);
-                let squares: Vec<f64> =
-                    values.iter().zip(&moved).map(|(a, b)| (a - b) * (a - b)).collect();
+                let squares: Vec<f64> = values
+                    .iter()
+                    .zip(&moved)
+                    .map(|(a, b)| (a - b) * (a - b))
+                    .collect();
                 mean(&squares)
             });
             for (differences, other) in differences.iter_mut().zip(others) {
@@ -122,7 +147,10 @@ fn the_noises_look_the_same_in_all_directions() {
             }
         }
         for (angle, differences) in [30, 45, 90].iter().zip(&differences) {
-            holds_zero_mean(&format!("{angle}° against 0° of {}", noise.named()), differences);
+            holds_zero_mean(
+                &format!("{angle}° against 0° of {}", noise.named()),
+                differences,
+            );
         }
     }
 }
@@ -133,9 +161,15 @@ fn seeds_are_independent() {
         let points = points(5, 50_000);
         let first = noise.sample(0, &points);
         for seed in [1, 65_536] {
-            let products: Vec<f64> =
-                first.iter().zip(noise.sample(seed, &points)).map(|(a, b)| a * b).collect();
-            holds_zero_mean(&format!("seeds 0 and {seed} of {}", noise.named()), &products);
+            let products: Vec<f64> = first
+                .iter()
+                .zip(noise.sample(seed, &points))
+                .map(|(a, b)| a * b)
+                .collect();
+            holds_zero_mean(
+                &format!("seeds 0 and {seed} of {}", noise.named()),
+                &products,
+            );
         }
     }
 }
@@ -148,7 +182,11 @@ fn octaves_are_independent() {
             2 => r#", "octaves": 2"#,
             _ => r#", "octaves": 3"#,
         };
-        let noise = Noise { node: "fractal2d", parameters, variance: 0.0 };
+        let noise = Noise {
+            node: "fractal2d",
+            parameters,
+            variance: 0.0,
+        };
         noise.sample(3, &points(9, 50_000))
     });
     for (lower, upper) in [(0, 1), (1, 2)] {

@@ -55,7 +55,10 @@ impl Builder {
     /// A further parameter.
     pub fn param(&mut self, name: impl Into<String>, ty: Type) -> Value {
         let index = self.function.params.len() as u32;
-        self.function.params.push(Parameter { name: name.into(), ty });
+        self.function.params.push(Parameter {
+            name: name.into(),
+            ty,
+        });
         self.push(Inst::Param(index), ty)
     }
 
@@ -67,7 +70,10 @@ impl Builder {
     /// Gives a value a readable name, unless it is a constant or a parameter or has a name.
     pub fn name(&mut self, value: Value, name: impl Into<String>) {
         if !matches!(self.function.inst(value), Inst::Const(_) | Inst::Param(_)) {
-            self.function.names.entry(value).or_insert_with(|| name.into());
+            self.function
+                .names
+                .entry(value)
+                .or_insert_with(|| name.into());
         }
     }
 
@@ -79,9 +85,16 @@ impl Builder {
     /// Adds the function to `module`, without the instructions that no result needs.
     pub fn finish(self, module: &mut Module) -> FunctionRef {
         let function = without_dead_code(self.function);
-        let results = function.results.iter().map(|&(_, v)| function.ty(v)).collect();
+        let results = function
+            .results
+            .iter()
+            .map(|&(_, v)| function.ty(v))
+            .collect();
         module.functions.push(function);
-        FunctionRef { id: FunctionId(module.functions.len() as u32 - 1), results }
+        FunctionRef {
+            id: FunctionId(module.functions.len() as u32 - 1),
+            results,
+        }
     }
 
     /// The type of a value.
@@ -150,11 +163,22 @@ impl Builder {
     /// If the operands' number or types are not the table's: a bug of the caller.
     pub fn op(&mut self, op: Op, operands: &[Value]) -> Value {
         let info = op.info();
-        assert_eq!(operands.len(), info.operands.len(), "operands of {}", info.name);
+        assert_eq!(
+            operands.len(),
+            info.operands.len(),
+            "operands of {}",
+            info.name
+        );
         let mut padded = [operands[0]; 3];
         padded[..operands.len()].copy_from_slice(operands);
         for (&value, &ty) in operands.iter().zip(info.operands) {
-            assert_eq!(self.ty(value), ty, "operand of {} in {}", info.name, self.function.name);
+            assert_eq!(
+                self.ty(value),
+                ty,
+                "operand of {} in {}",
+                info.name,
+                self.function.name
+            );
         }
         if let Some(value) = self.simplified(op, padded) {
             return value;
@@ -222,7 +246,9 @@ impl Builder {
                 _ => None,
             },
             Op::Neg => negated(self, a),
-            Op::Min | Op::Max | Op::MinI | Op::MaxI | Op::MinU | Op::And | Op::Or if a == b => Some(a),
+            Op::Min | Op::Max | Op::MinI | Op::MaxI | Op::MinU | Op::And | Op::Or if a == b => {
+                Some(a)
+            }
             Op::AddI | Op::AddU | Op::XorU | Op::OrU => {
                 if constants[0].is_some_and(|c| c.bits == 0) {
                     Some(b)
@@ -237,11 +263,13 @@ impl Builder {
             {
                 Some(a)
             }
-            Op::MulI | Op::MulU => match (constants[0].map(|c| c.bits), constants[1].map(|c| c.bits)) {
-                (Some(0), _) | (_, Some(1)) => Some(a),
-                (_, Some(0)) | (Some(1), _) => Some(b),
-                _ => None,
-            },
+            Op::MulI | Op::MulU => {
+                match (constants[0].map(|c| c.bits), constants[1].map(|c| c.bits)) {
+                    (Some(0), _) | (_, Some(1)) => Some(a),
+                    (_, Some(0)) | (Some(1), _) => Some(b),
+                    _ => None,
+                }
+            }
             Op::Select | Op::SelectI | Op::SelectU => match constants[0].map(|c| c.bits) {
                 Some(0) => Some(c),
                 Some(_) => Some(b),
@@ -288,7 +316,10 @@ impl Builder {
 
     fn results_of(&mut self, inst: Inst, types: &[Type]) -> Vec<Value> {
         let of = self.push(inst, Type::Bool);
-        (0u32..).zip(types).map(|(i, &ty)| self.push(Inst::Result(of, i), ty)).collect()
+        (0u32..)
+            .zip(types)
+            .map(|(i, &ty)| self.push(Inst::Result(of, i), ty))
+            .collect()
     }
 }
 
@@ -382,7 +413,10 @@ impl Module {
     /// A further table, whatever others hold.
     pub fn push_table(&mut self, name: impl Into<String>, data: Numbers) -> u32 {
         assert!(!data.is_empty(), "a table has numbers");
-        self.tables.push(Table { name: name.into(), data });
+        self.tables.push(Table {
+            name: name.into(),
+            data,
+        });
         self.tables.len() as u32 - 1
     }
 }
@@ -390,8 +424,20 @@ impl Module {
 fn is_commutative(op: Op) -> bool {
     matches!(
         op,
-        Op::Add | Op::Mul | Op::And | Op::Or | Op::AddI | Op::MulI | Op::EqI | Op::AndI
-            | Op::AddU | Op::MulU | Op::AndU | Op::OrU | Op::XorU | Op::EqU
+        Op::Add
+            | Op::Mul
+            | Op::And
+            | Op::Or
+            | Op::AddI
+            | Op::MulI
+            | Op::EqI
+            | Op::AndI
+            | Op::AddU
+            | Op::MulU
+            | Op::AndU
+            | Op::OrU
+            | Op::XorU
+            | Op::EqU
     )
 }
 
@@ -428,7 +474,9 @@ fn without_dead_code(function: Function) -> Function {
             .filter(|(v, _)| live[v.index()])
             .map(|(v, name)| (moved[v.index()], name))
             .collect(),
-        results: (function.results.into_iter()).map(|(n, v)| (n, moved[v.index()])).collect(),
+        results: (function.results.into_iter())
+            .map(|(n, v)| (n, moved[v.index()]))
+            .collect(),
         ..function
     }
 }
@@ -522,7 +570,12 @@ fn renumber(inst: &mut Inst, to: impl Fn(Value) -> Value) {
         Inst::Op(_, operands) => operands.iter_mut().for_each(|v| *v = to(*v)),
         Inst::Load(_, index) => *index = to(*index),
         Inst::Call(_, arguments) => arguments.iter_mut().for_each(|v| *v = to(*v)),
-        Inst::Fold { count, init, captures, .. } => {
+        Inst::Fold {
+            count,
+            init,
+            captures,
+            ..
+        } => {
             *count = to(*count);
             init.iter_mut().chain(captures).for_each(|v| *v = to(*v));
         }

@@ -188,7 +188,6 @@ macro_rules! define_fold {
     ($($variant:ident $name:literal ($($p:ident: $pt:tt),*) -> $rt:tt { $cpu:expr } $wgsl:literal $error:literal $doc:literal;)*) => {
         /// The result's bits for operands of these bits: the f32 semantics of the op.
         pub(crate) fn fold_constants(op: Op, bits: [u32; 3]) -> u32 {
-            #[allow(unused_imports, reason = "only some rows use the trait's methods")]
             use crate::float::Float;
             type F = f32;
             let mut operands = bits.into_iter();
@@ -218,7 +217,10 @@ mod tests {
     #[test]
     fn constants_fold_with_the_semantics_of_the_row() {
         let f = f32::to_bits;
-        assert_eq!(f32::from_bits(fold_constants(Op::Sub, [f(3.0), f(5.0), 0])), -2.0);
+        assert_eq!(
+            f32::from_bits(fold_constants(Op::Sub, [f(3.0), f(5.0), 0])),
+            -2.0
+        );
         assert_eq!(fold_constants(Op::MulU, [0x8000_0001, 2, 0]), 2);
         assert_eq!(fold_constants(Op::Lt, [f(1.0), f(2.0), 0]), 1);
     }

@@ -29,8 +29,14 @@ impl Numbers {
     /// `len` numbers that `compute` gives when they are first read.
     pub fn lazy(len: usize, compute: impl Fn() -> Vec<f32> + Send + Sync + 'static) -> Self {
         let compute: Box<dyn Fn() -> Vec<f32> + Send + Sync> = Box::new(compute);
-        let shared = Shared { data: OnceLock::new(), compute: Some(compute) };
-        Self { len, shared: Arc::new(shared) }
+        let shared = Shared {
+            data: OnceLock::new(),
+            compute: Some(compute),
+        };
+        Self {
+            len,
+            shared: Arc::new(shared),
+        }
     }
 
     /// How many numbers; computes none.
@@ -47,7 +53,13 @@ impl Numbers {
 impl From<Vec<f32>> for Numbers {
     fn from(data: Vec<f32>) -> Self {
         let len = data.len();
-        Self { len, shared: Arc::new(Shared { data: OnceLock::from(data), compute: None }) }
+        Self {
+            len,
+            shared: Arc::new(Shared {
+                data: OnceLock::from(data),
+                compute: None,
+            }),
+        }
     }
 }
 
@@ -56,7 +68,12 @@ impl Deref for Numbers {
 
     fn deref(&self) -> &[f32] {
         self.shared.data.get_or_init(|| {
-            let data = self.shared.compute.as_ref().map(|compute| compute()).unwrap_or_default();
+            let data = self
+                .shared
+                .compute
+                .as_ref()
+                .map(|compute| compute())
+                .unwrap_or_default();
             assert_eq!(data.len(), self.len, "numbers of a table");
             data
         })

@@ -10,14 +10,15 @@ const LARGEST_FOOTPRINT: f32 = 1e9;
 /// Adds the entry of the compiled method to the module, as its last function.
 pub(super) fn build(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
     let options = compiler.options;
-    let graph = |module: &mut Module, mode, suffix: &str| {
-        graph_function(compiler, module, mode, suffix)
-    };
+    let graph =
+        |module: &mut Module, mode, suffix: &str| graph_function(compiler, module, mode, suffix);
     match options.method {
         Method::Point => entry_over(compiler, module, name, |m| graph(m, Mode::Point, "point").0),
         Method::Naive => entry_over(compiler, module, name, |m| graph(m, Mode::Naive, "naive").0),
         Method::Ensemble => {
-            entry_over(compiler, module, name, |m| graph(m, Mode::Ensemble, "ensemble").0);
+            entry_over(compiler, module, name, |m| {
+                graph(m, Mode::Ensemble, "ensemble").0
+            });
         }
         Method::Local => entry_over(compiler, module, name, |m| graph(m, Mode::Local, "local").0),
         Method::Quad => entry_over(compiler, module, name, |m| graph(m, Mode::Quad, "quad").0),
@@ -103,8 +104,12 @@ pub(super) fn guarded(b: &mut Builder, value: Value) -> Value {
 }
 
 pub(super) fn finish(module: &mut Module, mut b: Builder, like: &FunctionRef, results: &[Value]) {
-    let names: Vec<String> =
-        module.function(like.id).results.iter().map(|(name, _)| name.clone()).collect();
+    let names: Vec<String> = module
+        .function(like.id)
+        .results
+        .iter()
+        .map(|(name, _)| name.clone())
+        .collect();
     for (name, &value) in names.into_iter().zip(results) {
         let value = guarded(&mut b, value);
         b.result(name, value);
@@ -175,7 +180,12 @@ fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
 }
 
 /// A function as the body of a fold of 0 or 1 turns: the state is replaced by its results.
-fn branch(compiler: &Compiler<'_>, module: &mut Module, function: &FunctionRef, name: &str) -> FunctionRef {
+fn branch(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    function: &FunctionRef,
+    name: &str,
+) -> FunctionRef {
     let mut b = Builder::new(name, "A branch: the state becomes the texture.");
     b.param("index", Scalar::U32);
     for i in 0..function.results.len() {

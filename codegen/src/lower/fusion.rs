@@ -38,6 +38,7 @@ impl<'a> Compiler<'a> {
             options,
             live: self.live.clone(),
             crossed: self.crossed.clone(),
+            literal: self.literal.clone(),
             functions: Default::default(),
             fused: Default::default(),
         }
@@ -53,7 +54,10 @@ impl Lower<'_> {
         }
         let before = self.chain(node)?;
         let bends = before.bends + u32::from(self.algebra.bent);
-        self.chains[index] = Some(Chain { bends, ..before.clone() });
+        self.chains[index] = Some(Chain {
+            bends,
+            ..before.clone()
+        });
         let [low, high] = before.signal.range;
         let bounded = low.is_finite() && high.is_finite() && low < high;
         if !self.algebra.bent || before.bends == 0 || !before.fixed || !bounded {
@@ -81,24 +85,34 @@ impl Lower<'_> {
                 Some(chain) => chain.clone(),
                 None => {
                     let bundle = self.bundles[id.index()].as_ref()?;
-                    if bundle.iter().all(|signal| signal.is_certain(&self.algebra.b)) {
-                        // A number: constant nodes are fixed, others hang on parameters.
-                        fixed &= bundle.iter().all(|s| self.algebra.b.as_constant(s.mean).is_some());
+                    if bundle
+                        .iter()
+                        .all(|signal| signal.is_certain(&self.algebra.b))
+                    {
+                        // A number: what hangs on a parameter, even one that drops out of it,
+                        // cannot be computed apart from the parameters.
+                        fixed &= self.compiler.literal[id.index()];
                         continue;
                     }
                     if bundle.len() != 1 {
                         return None;
                     }
                     let signal = Rc::new(bundle[0].clone());
-                    Chain { entry: id, signal, bends: 0, fixed: true }
+                    Chain {
+                        entry: id,
+                        signal,
+                        bends: 0,
+                        fixed: true,
+                    }
                 }
             };
             fixed &= this.fixed;
             chain = Some(match chain {
                 None => this,
-                Some(other) if other.entry == this.entry => {
-                    Chain { bends: other.bends.max(this.bends), ..other }
-                }
+                Some(other) if other.entry == this.entry => Chain {
+                    bends: other.bends.max(this.bends),
+                    ..other
+                },
                 Some(_) => return None,
             });
         }
@@ -111,7 +125,10 @@ impl Lower<'_> {
         let known = compiler.fused.borrow().get(&index).cloned();
         let samples = known.unwrap_or_else(|| {
             let samples = sample(compiler, index, entry, domain, closed.len());
-            compiler.fused.borrow_mut().insert(index, Arc::clone(&samples));
+            compiler
+                .fused
+                .borrow_mut()
+                .insert(index, Arc::clone(&samples));
             samples
         });
         let name = super::identifier(&node.name);
@@ -120,7 +137,11 @@ impl Lower<'_> {
         });
         (closed.iter().enumerate())
             .map(|(i, signal)| {
-                let name = if closed.len() > 1 { format!("{name}_{i}") } else { name.clone() };
+                let name = if closed.len() > 1 {
+                    format!("{name}_{i}")
+                } else {
+                    name.clone()
+                };
                 let of = (function.clone(), i);
                 let bounds = (domain, signal.range);
                 let table = Tabulated::new(self.module, &name, of, bounds, &samples);
@@ -150,13 +171,21 @@ fn region(compiler: &Compiler<'_>, index: usize, entry: NodeId) -> Vec<usize> {
 }
 
 /// The region as a function of the entry's value.
-fn function(compiler: &Compiler<'_>, module: &mut Module, index: usize, entry: NodeId) -> FunctionRef {
+fn function(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    index: usize,
+    entry: NodeId,
+) -> FunctionRef {
     let graph = compiler.graph;
     let name = super::identifier(&graph.nodes[index].name);
     let mut b = Builder::new(format!("{name}_of"), "A function of one signal.");
     let x = b.param_f32("x");
     let argument = Signal::certain(&mut b, x);
-    let arguments = Arguments { footprint: [x; 8], parameters: Vec::new() };
+    let arguments = Arguments {
+        footprint: [x; 8],
+        parameters: Vec::new(),
+    };
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
     lower.bundles[entry.index()] = Some(vec![argument]);
     for node in region(compiler, index, entry) {
@@ -164,7 +193,9 @@ fn function(compiler: &Compiler<'_>, module: &mut Module, index: usize, entry: N
         let bundle = (definition.lower)(&mut lower, &graph.nodes[node]);
         lower.bundles[node] = Some(bundle);
     }
-    let bundle = lower.bundles[index].take().expect("the region ends at the node");
+    let bundle = lower.bundles[index]
+        .take()
+        .expect("the region ends at the node");
     let mut b = lower.algebra.b;
     for (i, signal) in bundle.iter().enumerate() {
         let value = signal.flat_mean(&mut b);

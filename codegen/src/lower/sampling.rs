@@ -11,7 +11,10 @@ use crate::moments::Mode;
 pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &str, samples: u32) {
     let moments = compiler.options.moments;
     // Variances of the point function are 0 and are not asked for.
-    let options = Options { moments: false, ..*compiler.options };
+    let options = Options {
+        moments: false,
+        ..*compiler.options
+    };
     let plain = compiler.with_options(&options);
     let (point, _) = graph_function(&plain, module, Mode::Point, "point");
     let outputs = point.results.len();
@@ -19,8 +22,13 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
 
     let mut b = Builder::new("sample", "One more sample.");
     let index = b.param("index", Scalar::U32);
-    let state: Vec<Value> = (0..state_length).map(|i| b.param_f32(format!("state_{i}"))).collect();
-    let (shift_x, shift_y) = (b.param("shift_x", Scalar::U32), b.param("shift_y", Scalar::U32));
+    let state: Vec<Value> = (0..state_length)
+        .map(|i| b.param_f32(format!("state_{i}")))
+        .collect();
+    let (shift_x, shift_y) = (
+        b.param("shift_x", Scalar::U32),
+        b.param("shift_y", Scalar::U32),
+    );
     let arguments = Arguments::declare(&mut b, compiler.graph);
     let [x, y] = offset(&mut b, compiler.options.filter, index, [shift_x, shift_y]);
     let mut all = arguments.all();
@@ -64,8 +72,12 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     let mut captures = vec![hash, second];
     captures.extend(&arguments);
     let state = b.fold(&sample, count, &vec![zero; state_length], &captures);
-    let names: Vec<String> =
-        module.function(point.id).results.iter().map(|(name, _)| name.clone()).collect();
+    let names: Vec<String> = module
+        .function(point.id)
+        .results
+        .iter()
+        .map(|(name, _)| name.clone())
+        .collect();
     for (name, &value) in names.iter().zip(&state) {
         let value = guarded(&mut b, value);
         b.result(name.clone(), value);
@@ -179,7 +191,11 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
         most
     });
     let moments = compiler.options.moments;
-    let outputs = if moments { quad.results.len() / 2 } else { quad.results.len() };
+    let outputs = if moments {
+        quad.results.len() / 2
+    } else {
+        quad.results.len()
+    };
     // Of each node: x, y, the weight, and the weight's share of all weights so far.
     let mut total = 0.0;
     let mut rows = Vec::new();
@@ -194,7 +210,9 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
     let mut b = Builder::new("part", "One more part of the footprint.");
     let index = b.param("index", Scalar::U32);
     let length = if moments { 2 * outputs } else { outputs };
-    let state: Vec<Value> = (0..length).map(|i| b.param_f32(format!("state_{i}"))).collect();
+    let state: Vec<Value> = (0..length)
+        .map(|i| b.param_f32(format!("state_{i}")))
+        .collect();
     let (far, near) = (b.param_f32("root_share"), b.param_f32("root_rest"));
     let arguments = Arguments::declare(&mut b, compiler.graph);
     let four = b.u32(4);

@@ -43,6 +43,20 @@ pub(super) fn crossed(graph: &Graph) -> Vec<bool> {
     crossed
 }
 
+/// Whether literals alone shape each node: no surface and no live parameter.
+pub(super) fn literal(graph: &Graph) -> Vec<bool> {
+    let mut literal = Vec::with_capacity(graph.nodes.len());
+    for node in &graph.nodes {
+        let alone = node.inputs.iter().all(|input| match &input.source {
+            Source::Literal(_) => true,
+            Source::Node(id) => literal[id.index()],
+            Source::Surface | Source::Parameter(_) => false,
+        });
+        literal.push(alone);
+    }
+    literal
+}
+
 /// How many live nodes carry each symbol. A symbol is its own only while several do: from the fork
 /// where it was born to where its paths have met.
 #[derive(Debug, Default)]
@@ -51,8 +65,10 @@ pub(super) struct Carriers {
 }
 
 fn symbols(bundle: &Bundle) -> Vec<Symbol> {
-    let mut all: Vec<Symbol> =
-        bundle.iter().flat_map(|signal| signal.shared.iter().map(|&(s, _)| s)).collect();
+    let mut all: Vec<Symbol> = bundle
+        .iter()
+        .flat_map(|signal| signal.shared.iter().map(|&(s, _)| s))
+        .collect();
     all.sort_unstable();
     all.dedup();
     all
@@ -85,7 +101,10 @@ impl Carriers {
     ) {
         for symbol in symbols(bundle) {
             let only = self.counts.get(&symbol) == Some(&1);
-            let holders = bundle.iter().filter(|s| s.coefficient(symbol).is_some()).count();
+            let holders = bundle
+                .iter()
+                .filter(|s| s.coefficient(symbol).is_some())
+                .count();
             if only && (holders == 1 || !crossed) && symbol < kept {
                 for signal in bundle.iter_mut() {
                     signal.retire(b, symbol);

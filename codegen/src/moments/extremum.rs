@@ -16,7 +16,12 @@ impl Algebra {
                 Signal::certain(b, mean).with_range(range)
             } else {
                 // Equal spreads: whichever mean is larger carries all of it.
-                Signal { mean, range, hermite: None, ..x.clone() }
+                Signal {
+                    mean,
+                    range,
+                    hermite: None,
+                    ..x.clone()
+                }
             };
         }
         self.bent = true;

@@ -40,15 +40,33 @@ impl Piecewise {
     /// 1 where x ≥ `at`, else 0.
     pub fn step(b: &mut Builder, at: Value) -> Self {
         let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        let knots = vec![Knot { at, jump: one, bend: zero }];
-        Self { offset: zero, slope: zero, knots, smooth: Vec::new() }
+        let knots = vec![Knot {
+            at,
+            jump: one,
+            bend: zero,
+        }];
+        Self {
+            offset: zero,
+            slope: zero,
+            knots,
+            smooth: Vec::new(),
+        }
     }
 
     /// |x|.
     pub fn absolute(b: &mut Builder) -> Self {
         let (zero, minus, two) = (b.f32(0.0), b.f32(-1.0), b.f32(2.0));
-        let knots = vec![Knot { at: zero, jump: zero, bend: two }];
-        Self { offset: zero, slope: minus, knots, smooth: Vec::new() }
+        let knots = vec![Knot {
+            at: zero,
+            jump: zero,
+            bend: two,
+        }];
+        Self {
+            offset: zero,
+            slope: minus,
+            knots,
+            smooth: Vec::new(),
+        }
     }
 
     /// x limited to `[low, high]`; `low` where they are swapped, as by `max` after `min`.
@@ -56,10 +74,23 @@ impl Piecewise {
         let high = b.max(low, high);
         let (zero, one, minus) = (b.f32(0.0), b.f32(1.0), b.f32(-1.0));
         let knots = vec![
-            Knot { at: low, jump: zero, bend: one },
-            Knot { at: high, jump: zero, bend: minus },
+            Knot {
+                at: low,
+                jump: zero,
+                bend: one,
+            },
+            Knot {
+                at: high,
+                jump: zero,
+                bend: minus,
+            },
         ];
-        Self { offset: low, slope: zero, knots, smooth: Vec::new() }
+        Self {
+            offset: low,
+            slope: zero,
+            knots,
+            smooth: Vec::new(),
+        }
     }
 
     /// 0 below `low`, 1 above `high`, cubic between (a step where they are equal).
@@ -112,7 +143,12 @@ impl Piecewise {
             before = after;
         }
         let slope = zero;
-        Self { offset: stops[0].1, slope, knots, smooth }
+        Self {
+            offset: stops[0].1,
+            slope,
+            knots,
+            smooth,
+        }
     }
 
     /// `a·T + c`.
@@ -136,7 +172,10 @@ impl Piecewise {
         if !self.smooth.is_empty() {
             return self.clone();
         }
-        let mut out = Self { knots: Vec::new(), ..self.clone() };
+        let mut out = Self {
+            knots: Vec::new(),
+            ..self.clone()
+        };
         for knot in &self.knots {
             match b.as_constant(knot.at) {
                 Some(at) if at >= high => {}
@@ -180,8 +219,11 @@ impl Piecewise {
     }
 
     fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
-        (self.smooth.iter().zip(self.knots.windows(2)))
-            .map(|(&height, pair)| Segment { from: pair[0].at, to: pair[1].at, height })
+        (self.smooth.iter().zip(self.knots.windows(2))).map(|(&height, pair)| Segment {
+            from: pair[0].at,
+            to: pair[1].at,
+            height,
+        })
     }
 }
 
@@ -280,19 +322,34 @@ impl Transfer for Piecewise {
             .collect();
         let Some(knots) = knots else { return UNBOUNDED };
         let value = |x: f32, jumps: bool| {
-            knots.iter().fold(offset + slope * x, |sum, &[at, jump, bend]| {
-                let jumped = if x > at || (jumps && x == at) { jump } else { 0.0 };
-                sum + jumped + bend * (x - at).max(0.0)
-            })
+            knots
+                .iter()
+                .fold(offset + slope * x, |sum, &[at, jump, bend]| {
+                    let jumped = if x > at || (jumps && x == at) {
+                        jump
+                    } else {
+                        0.0
+                    };
+                    sum + jumped + bend * (x - at).max(0.0)
+                })
         };
         let after = knots.iter().fold(slope, |sum, k| sum + k[2]);
-        let (first, last) = (knots.first().map_or(0.0, |k| k[0]), knots.last().map_or(0.0, |k| k[0]));
+        let (first, last) = (
+            knots.first().map_or(0.0, |k| k[0]),
+            knots.last().map_or(0.0, |k| k[0]),
+        );
         let flat = |s: f32| s.abs() < 1e-6;
         if (!low.is_finite() && !flat(slope)) || (!high.is_finite() && !flat(after)) {
             return UNBOUNDED;
         }
-        let (low, high) = (if low.is_finite() { low } else { first }, if high.is_finite() { high } else { last });
-        let inside = knots.iter().map(|k| k[0]).filter(|&t| t >= low && t <= high);
+        let (low, high) = (
+            if low.is_finite() { low } else { first },
+            if high.is_finite() { high } else { last },
+        );
+        let inside = knots
+            .iter()
+            .map(|k| k[0])
+            .filter(|&t| t >= low && t <= high);
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
         for x in inside.chain([low, high]) {
             for jumps in [false, true] {

@@ -68,7 +68,9 @@ fn product_range(x: [f32; 2], y: [f32; 2]) -> [f32; 2] {
         return UNBOUNDED;
     }
     let corners = [x[0] * y[0], x[0] * y[1], x[1] * y[0], x[1] * y[1]];
-    corners.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &c| {
-        [low.min(c), high.max(c)]
-    })
+    corners
+        .iter()
+        .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &c| {
+            [low.min(c), high.max(c)]
+        })
 }

@@ -93,7 +93,11 @@ impl Signal {
 
     /// The same signal with its mean as one number.
     pub fn flat(&self, b: &mut Builder) -> Self {
-        Self { mean: self.flat_mean(b), cell: None, ..self.clone() }
+        Self {
+            mean: self.flat_mean(b),
+            cell: None,
+            ..self.clone()
+        }
     }
 
     /// |g|².
@@ -129,12 +133,19 @@ impl Signal {
                 rest = b.add(rest, product);
             }
         }
-        Covariance { linear, rest, total: b.add(linear, rest) }
+        Covariance {
+            linear,
+            rest,
+            total: b.add(linear, rest),
+        }
     }
 
     /// The coefficient of a shared symbol.
     pub fn coefficient(&self, symbol: Symbol) -> Option<Value> {
-        self.shared.iter().find(|&&(s, _)| s == symbol).map(|&(_, c)| c)
+        self.shared
+            .iter()
+            .find(|&&(s, _)| s == symbol)
+            .map(|&(_, c)| c)
     }
 
     /// The third cumulant that g and H carry, limited to |κ₃| ≤ σ³ (`sd` = σ):
@@ -188,10 +199,15 @@ impl Signal {
             return self.clone();
         }
         let mean = position::scale(b, (self.cell, self.mean), by);
-        let mut out = self.map(b, mean, |b, v| b.mul(v, by), |b, v| {
-            let square = b.square(by);
-            b.mul(v, square)
-        });
+        let mut out = self.map(
+            b,
+            mean,
+            |b, v| b.mul(v, by),
+            |b, v| {
+                let square = b.square(by);
+                b.mul(v, square)
+            },
+        );
         out.range = match b.as_constant(by) {
             Some(by) if self.range[0].is_finite() && self.range[1].is_finite() => {
                 ordered(self.range[0] * by, self.range[1] * by)
@@ -211,7 +227,13 @@ impl Signal {
             Some(by) => [self.range[0] + by, self.range[1] + by],
             None => UNBOUNDED,
         };
-        Self { mean, cell, range, hermite: None, ..self.clone() }
+        Self {
+            mean,
+            cell,
+            range,
+            hermite: None,
+            ..self.clone()
+        }
     }
 
     /// `−X`.
@@ -258,7 +280,10 @@ impl Signal {
             ],
             private: pair(self.private, other.private),
             shared,
-            range: [self.range[0] + other.range[0], self.range[1] + other.range[1]],
+            range: [
+                self.range[0] + other.range[0],
+                self.range[1] + other.range[1],
+            ],
             hermite: None,
         }
     }
@@ -287,7 +312,11 @@ impl Signal {
     /// Adds a coefficient of a shared symbol that is not yet carried, or adds to it.
     pub(super) fn push_shared(&mut self, symbol: Symbol, coefficient: Value) {
         debug_assert!(self.coefficient(symbol).is_none(), "{symbol:?} twice");
-        let at = self.shared.iter().position(|&(s, _)| s > symbol).unwrap_or(self.shared.len());
+        let at = self
+            .shared
+            .iter()
+            .position(|&(s, _)| s > symbol)
+            .unwrap_or(self.shared.len());
         self.shared.insert(at, (symbol, coefficient));
     }
 

@@ -42,14 +42,21 @@ impl Sampled {
         let mut mips = vec![values];
         for _ in 0..LEVELS / 2 {
             let finer = mips.last().expect("the samples");
-            mips.push(finer.chunks(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect());
+            mips.push(
+                finer
+                    .chunks(2)
+                    .map(|pair| 0.5 * (pair[0] + pair[1]))
+                    .collect(),
+            );
         }
         Self { mips }
     }
 
     /// One moment's pyramid: all levels, finest first.
     fn pyramid(&self, moment: Moment) -> Vec<f32> {
-        (0..LEVELS).flat_map(|level| self.level(level, moment)).collect()
+        (0..LEVELS)
+            .flat_map(|level| self.level(level, moment))
+            .collect()
     }
 
     /// One level, from the samples that are 8 or 11 a σ.
@@ -74,9 +81,9 @@ impl Sampled {
                     (z, (-0.5 * z * z).exp(), value)
                 });
                 let average = |f: &dyn Fn(f64, f64) -> f64| {
-                    let (sum, total) = near
-                        .clone()
-                        .fold((0.0, 0.0), |(sum, total), (z, w, v)| (sum + w * f(z, v), total + w));
+                    let (sum, total) = near.clone().fold((0.0, 0.0), |(sum, total), (z, w, v)| {
+                        (sum + w * f(z, v), total + w)
+                    });
                     sum / total
                 };
                 (match moment {
@@ -158,7 +165,14 @@ impl Tabulated {
             let bake = move || samples[component].pyramid(moment);
             module.push_table(format!("{name}_{suffix}"), Numbers::lazy(total, bake))
         });
-        Self { function, component, domain, range, levels, tables }
+        Self {
+            function,
+            component,
+            domain,
+            range,
+            levels,
+            tables,
+        }
     }
 }
 
@@ -221,7 +235,12 @@ impl Tabulated {
         let finest = b.f32(FINEST as f32);
         let below = b.lt(s, finest);
         let share = b.scale(s, 1.0 / FINEST as f32);
-        Place { texels, mix, below, share }
+        Place {
+            texels,
+            mix,
+            below,
+            share,
+        }
     }
 
     /// The moment at the place.

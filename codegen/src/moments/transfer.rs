@@ -56,8 +56,15 @@ impl Algebra {
         let b = &mut self.b;
         let range = t.range(b, x.range);
         // Whole periods do not matter, and a fraction keeps its detail far from the origin.
-        let fraction = Signal { cell: None, ..x.clone() };
-        let x = if t.period() == Some(1.0) { &fraction } else { x };
+        let fraction = Signal {
+            cell: None,
+            ..x.clone()
+        };
+        let x = if t.period() == Some(1.0) {
+            &fraction
+        } else {
+            x
+        };
         if !self.mode.spreads() || x.is_certain(b) {
             let mean = x.flat_mean(b);
             let value = t.value(b, mean);
@@ -69,7 +76,13 @@ impl Algebra {
         let variance = b.add(linear, other);
         let (sd, inverse_sd) = self.spread(variance);
         let b = &mut self.b;
-        let gaussian = Gaussian { mean: x.mean, variance, sd, inverse_sd, range: x.range };
+        let gaussian = Gaussian {
+            mean: x.mean,
+            variance,
+            sd,
+            inverse_sd,
+            range: x.range,
+        };
         let m = t.moments(b, &gaussian);
         self.bent |= !b.is_zero(m.distortion);
         let mut out = x.scale(b, m.slope);
@@ -109,7 +122,11 @@ impl Algebra {
             let coefficient = b.scale(coefficient, std::f32::consts::FRAC_1_SQRT_2);
             out.push_shared(symbol, coefficient);
         }
-        let explained = if x.hermite.is_some() { variance } else { linear };
+        let explained = if x.hermite.is_some() {
+            variance
+        } else {
+            linear
+        };
         if x.hermite.is_some() || carries {
             let second = b.mul(m.curvature, explained);
             let second = b.square(second);

@@ -30,9 +30,13 @@ impl SquareWave {
         let mut out = [b.f32(1.0), b.f32(0.0), b.f32(0.0), b.f32(0.0)];
         // Rising edges at 0 and 1, falling ones at width − 1, width and width + 1; the rising edge
         // at −1 is the 1 that the sum starts from.
-        for (from, shift, sign) in
-            [(u, 0.0, 1.0), (u, -1.0, 1.0), (falling, 1.0, -1.0), (falling, 0.0, -1.0), (falling, -1.0, -1.0)]
-        {
+        for (from, shift, sign) in [
+            (u, 0.0, 1.0),
+            (u, -1.0, 1.0),
+            (falling, 1.0, -1.0),
+            (falling, 0.0, -1.0),
+            (falling, -1.0, -1.0),
+        ] {
             let distance = b.offset(from, shift);
             let n = Normal::at(b, distance, inverse);
             let density = b.mul(n.density, inverse);
@@ -42,9 +46,12 @@ impl SquareWave {
             let square = b.offset(square, -1.0);
             let third = b.mul(square, n.density);
             let third = b.mul(third, inverse3);
-            for (sum, (part, sign)) in
-                out.iter_mut().zip([(n.below, sign), (density, sign), (curved, -sign), (third, sign)])
-            {
+            for (sum, (part, sign)) in out.iter_mut().zip([
+                (n.below, sign),
+                (density, sign),
+                (curved, -sign),
+                (third, sign),
+            ]) {
                 let part = b.scale(part, sign);
                 *sum = b.add(*sum, part);
             }
@@ -77,8 +84,14 @@ impl SquareWave {
             let angle = b.scale(turns, TAU);
             let (sine, cosine) = (b.sin(angle), b.cos(angle));
             let w = TAU * k;
-            for (i, (trig, factor)) in
-                [(cosine, 1.0), (sine, -w), (cosine, -w * w), (sine, w * w * w)].into_iter().enumerate()
+            for (i, (trig, factor)) in [
+                (cosine, 1.0),
+                (sine, -w),
+                (cosine, -w * w),
+                (sine, w * w * w),
+            ]
+            .into_iter()
+            .enumerate()
             {
                 let part = b.mul(amplitude, trig);
                 let part = b.scale(part, factor);
@@ -116,7 +129,13 @@ impl Transfer for SquareWave {
         let distortion = b.sub(variance, linear);
         let zero = b.f32(0.0);
         let distortion = b.max(distortion, zero);
-        Moments { mean, slope, curvature, third, distortion }
+        Moments {
+            mean,
+            slope,
+            curvature,
+            third,
+            distortion,
+        }
     }
 
     fn range(&self, _: &Builder, _: [f32; 2]) -> [f32; 2] {

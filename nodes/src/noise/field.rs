@@ -19,7 +19,9 @@ const WIDEST: f32 = 1.0e4;
 impl Spread {
     /// Of a position (x, y); zero where signals carry none.
     pub(crate) fn of(b: &mut Builder, position: &[Signal]) -> Self {
-        let [x, y] = position else { panic!("a position has two coordinates") };
+        let [x, y] = position else {
+            panic!("a position has two coordinates")
+        };
         let limit = b.f32(WIDEST * WIDEST);
         let (vx, vy) = (x.variance(b), y.variance(b));
         let covariance = x.covariance(b, y).total;
@@ -35,7 +37,10 @@ impl Spread {
         let root = b.sqrt(square);
         let zero = b.f32(0.0);
         let (more, less) = (b.add(half, root), b.sub(half, root));
-        Self { covariance, eigenvalues: [more, b.max(less, zero)] }
+        Self {
+            covariance,
+            eigenvalues: [more, b.max(less, zero)],
+        }
     }
 }
 
@@ -56,7 +61,9 @@ impl Field {
     /// The signal of the field at a position with coefficients: g = Jᵀ∇M, H = Jᵀ Hess(M) J +
     /// Σ ∂_i M H_i, the position's own symbols through ∇M, and the rest as a fresh ε.
     pub(crate) fn at(&self, lower: &mut Lower<'_>, position: &[Signal]) -> Signal {
-        let [x, y] = position else { panic!("a position has two coordinates") };
+        let [x, y] = position else {
+            panic!("a position has two coordinates")
+        };
         let algebra = &mut lower.algebra;
         let [dx, dy] = self.gradient;
         let b = &mut algebra.b;

@@ -43,7 +43,10 @@ pub(crate) struct Octaves {
 impl Octaves {
     /// The standard deviation of the sum.
     pub(crate) fn sd(self) -> f32 {
-        (0..self.count as i32).map(|k| self.diminish.powi(2 * k)).sum::<f32>().sqrt()
+        (0..self.count as i32)
+            .map(|k| self.diminish.powi(2 * k))
+            .sum::<f32>()
+            .sqrt()
     }
 }
 
@@ -69,7 +72,10 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
         lower.source_footprint(wavelengths);
         scale *= octaves.lacunarity;
     }
-    let key = format!("lattice {mode:?} {} {}", octaves.lacunarity, octaves.diminish);
+    let key = format!(
+        "lattice {mode:?} {} {}",
+        octaves.lacunarity, octaves.diminish
+    );
     let octave = match mode {
         Mode::Point => lower.function(&key, |module| point_octave(module, octaves)),
         _ => lower.function(&key, |module| filtered_octave(module, mode, octaves)),
@@ -105,7 +111,11 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
         mean: at(0),
         gradient: [at(1), at(2)],
         hessian: [at(3), at(4), at(5)],
-        rest: if mode.spreads() { sums[orders(mode)] } else { zero },
+        rest: if mode.spreads() {
+            sums[orders(mode)]
+        } else {
+            zero
+        },
     }
 }
 
@@ -141,9 +151,15 @@ impl Octave {
         let shift = b.f32(0.381_966);
         for (i, name) in ["x", "y"].iter().enumerate() {
             let start = Signal::certain(b, self.fractions[i]);
-            let start = Signal { cell: Some(self.cells[i]), ..start };
+            let start = Signal {
+                cell: Some(self.cells[i]),
+                ..start
+            };
             let next = start.scale(b, lacunarity).offset(b, shift);
-            b.result(format!("cell_{name}"), next.cell.expect("a position keeps its cell"));
+            b.result(
+                format!("cell_{name}"),
+                next.cell.expect("a position keeps its cell"),
+            );
             b.result(*name, next.mean);
         }
         let scale = b.scale(self.scale, octaves.lacunarity);
@@ -231,7 +247,15 @@ fn point_octave(module: &mut Module, octaves: Octaves) -> FunctionRef {
     let three = b.f32(3.0);
     let (start_x, start_y) = (window(&mut b, x, three), window(&mut b, y, three));
     let (zero, rows) = (b.f32(0.0), b.u32(3));
-    let captures = [start_x, start_y, state.cells[0], state.cells[1], x, y, state.seed];
+    let captures = [
+        start_x,
+        start_y,
+        state.cells[0],
+        state.cells[1],
+        x,
+        y,
+        state.seed,
+    ];
     let rows = b.fold(&row, rows, &[zero], &captures)[0];
     // c = 1/(√π a³).
     let unit = 1.0 / (std::f32::consts::PI.sqrt() * WIDTH.powi(3));
@@ -247,15 +271,28 @@ fn point_octave(module: &mut Module, octaves: Octaves) -> FunctionRef {
 /// Hessians are summed in d and B alone: T⁻¹ is applied once, to the sums.
 fn kernel(module: &mut Module, mode: Mode) -> FunctionRef {
     let orders = orders(mode);
-    let mut b = Builder::new("lattice_kernel", "The filtered kernel of one lattice point.");
+    let mut b = Builder::new(
+        "lattice_kernel",
+        "The filtered kernel of one lattice point.",
+    );
     let index = b.param("index", Type::U32);
-    let sums: Vec<Value> = (0..orders).map(|i| b.param_f32(format!("sum_{i}"))).collect();
+    let sums: Vec<Value> = (0..orders)
+        .map(|i| b.param_f32(format!("sum_{i}")))
+        .collect();
     let start = b.param_f32("start_x");
     let (x, dy) = (b.param_f32("x"), b.param_f32("dy"));
     let cell = b.param("cell_x", Type::I32);
     let hash = b.param("row_hash", Type::U32);
-    let p = [b.param_f32("p_xx"), b.param_f32("p_xy"), b.param_f32("p_yy")];
-    let t = [b.param_f32("t_xx"), b.param_f32("t_xy"), b.param_f32("t_yy")];
+    let p = [
+        b.param_f32("p_xx"),
+        b.param_f32("p_xy"),
+        b.param_f32("p_yy"),
+    ];
+    let t = [
+        b.param_f32("t_xx"),
+        b.param_f32("t_xy"),
+        b.param_f32("t_yy"),
+    ];
     let offset = b.float_u(index);
     let place = b.add(start, offset);
     let dx = b.sub(x, place);
@@ -316,15 +353,25 @@ fn row(module: &mut Module, mode: Mode) -> FunctionRef {
     let kernel = kernel(module, mode);
     let mut b = Builder::new("lattice_row", "The filtered kernels of one lattice row.");
     let index = b.param("index", Type::U32);
-    let sums: Vec<Value> = (0..orders(mode)).map(|i| b.param_f32(format!("sum_{i}"))).collect();
+    let sums: Vec<Value> = (0..orders(mode))
+        .map(|i| b.param_f32(format!("sum_{i}")))
+        .collect();
     let start = b.param_f32("start_y");
     let (columns, count) = (b.param_f32("columns"), b.param("column_count", Type::U32));
     let shear = b.param_f32("shear");
     let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
     let (x, y) = (b.param_f32("x"), b.param_f32("y"));
     let seed = b.param("seed", Type::U32);
-    let p = [b.param_f32("p_xx"), b.param_f32("p_xy"), b.param_f32("p_yy")];
-    let t = [b.param_f32("t_xx"), b.param_f32("t_xy"), b.param_f32("t_yy")];
+    let p = [
+        b.param_f32("p_xx"),
+        b.param_f32("p_xy"),
+        b.param_f32("p_yy"),
+    ];
+    let t = [
+        b.param_f32("t_xx"),
+        b.param_f32("t_xy"),
+        b.param_f32("t_yy"),
+    ];
     let offset = b.float_u(index);
     let place = b.add(start, offset);
     let dy = b.sub(y, place);
@@ -333,8 +380,9 @@ fn row(module: &mut Module, mode: Mode) -> FunctionRef {
     let lean = b.mul(shear, dy);
     let centre = b.sub(x, lean);
     let start = window(&mut b, centre, columns);
-    let captures =
-        [start, x, dy, cells[0], hash, p[0], p[1], p[2], t[0], t[1], t[2]];
+    let captures = [
+        start, x, dy, cells[0], hash, p[0], p[1], p[2], t[0], t[1], t[2],
+    ];
     let sums = b.fold(&kernel, count, &sums, &captures);
     for (i, sum) in sums.into_iter().enumerate() {
         b.result(format!("sum_{i}"), sum);
@@ -404,10 +452,17 @@ fn filtered_octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Functio
     let mut b = Builder::new("lattice_octave", "One more octave of the filtered noise.");
     b.param("index", Type::U32);
     let names = ["mean", "dx", "dy", "dxx", "dxy", "dyy"];
-    let sums: Vec<Value> = names[..orders].iter().map(|name| b.param_f32(*name)).collect();
+    let sums: Vec<Value> = names[..orders]
+        .iter()
+        .map(|name| b.param_f32(*name))
+        .collect();
     let rest = mode.spreads().then(|| b.param_f32("rest"));
     let state = Octave::declare(&mut b);
-    let covariance = [b.param_f32("s_xx"), b.param_f32("s_xy"), b.param_f32("s_yy")];
+    let covariance = [
+        b.param_f32("s_xx"),
+        b.param_f32("s_xy"),
+        b.param_f32("s_yy"),
+    ];
     let eigenvalues = [b.param_f32("s_major"), b.param_f32("s_minor")];
 
     // The footprint in cells of this octave, T = a²I + Σ and P = T⁻¹.
@@ -474,8 +529,21 @@ fn filtered_octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Functio
     let start_y = window(&mut b, state.fractions[1], rows);
     let shear = b.div(t_xy, t_yy);
     let captures = [
-        start_y, columns, column_count, shear, state.cells[0], state.cells[1],
-        state.fractions[0], state.fractions[1], state.seed, p_xx, p_xy, p_yy, t_xx, t_xy, t_yy,
+        start_y,
+        columns,
+        column_count,
+        shear,
+        state.cells[0],
+        state.cells[1],
+        state.fractions[0],
+        state.fractions[1],
+        state.seed,
+        p_xx,
+        p_xy,
+        p_yy,
+        t_xx,
+        t_xy,
+        t_yy,
     ];
     let kernels = b.fold(&row, row_count, &vec![zero; orders], &captures);
 

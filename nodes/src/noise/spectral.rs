@@ -63,7 +63,10 @@ impl Spectrum {
                 let angle = std::f64::consts::PI * turn;
                 let grid = f64::from(GRID) * frequency;
                 Wave {
-                    vector: [(grid * angle.cos()).round() as i32, (grid * angle.sin()).round() as i32],
+                    vector: [
+                        (grid * angle.cos()).round() as i32,
+                        (grid * angle.sin()).round() as i32,
+                    ],
                     phase: uniform(self.seed, i, 3 * attempt + 2) as f32,
                 }
             };
@@ -100,7 +103,11 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], spectrum: Spe
     let spread = Spread::of(lower.b(), position);
     let size = lower.b().sqrt(spread.eigenvalues[0]);
     lower.source_footprint(size);
-    let Spectrum { waves, bandwidth, seed } = spectrum;
+    let Spectrum {
+        waves,
+        bandwidth,
+        seed,
+    } = spectrum;
     let key = format!("spectral {mode:?} {waves} {bandwidth} {seed}");
     let function = lower.function(&key, |module| build(module, mode, spectrum));
     let b = lower.b();
@@ -111,8 +118,15 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], spectrum: Spe
     }
     arguments.extend(spread.covariance);
     let sums = b.call(&function, &arguments);
-    let [mean, dx, dy, dxx, dxy, dyy, rest] = sums[..] else { panic!("a field has seven parts") };
-    Field { mean, gradient: [dx, dy], hessian: [dxx, dxy, dyy], rest }
+    let [mean, dx, dy, dxx, dxy, dyy, rest] = sums[..] else {
+        panic!("a field has seven parts")
+    };
+    Field {
+        mean,
+        gradient: [dx, dy],
+        hessian: [dxx, dxy, dyy],
+        rest,
+    }
 }
 
 fn build(module: &mut Module, mode: Mode, spectrum: Spectrum) -> FunctionRef {
@@ -121,7 +135,11 @@ fn build(module: &mut Module, mode: Mode, spectrum: Spectrum) -> FunctionRef {
     let x = b.param_f32("x");
     let cell_y = b.param("cell_y", Type::I32);
     let y = b.param_f32("y");
-    let covariance = [b.param_f32("s_xx"), b.param_f32("s_xy"), b.param_f32("s_yy")];
+    let covariance = [
+        b.param_f32("s_xx"),
+        b.param_f32("s_xy"),
+        b.param_f32("s_yy"),
+    ];
     let zero = b.f32(0.0);
     let mut sums = [zero; 7];
     let amplitude = (2.0 / spectrum.waves as f32).sqrt();
@@ -169,7 +187,10 @@ fn build(module: &mut Module, mode: Mode, spectrum: Spectrum) -> FunctionRef {
             *sum = b.add(*sum, part);
         }
     }
-    for (name, sum) in ["mean", "dx", "dy", "dxx", "dxy", "dyy", "rest"].into_iter().zip(sums) {
+    for (name, sum) in ["mean", "dx", "dy", "dxx", "dxy", "dyy", "rest"]
+        .into_iter()
+        .zip(sums)
+    {
         b.result(name, sum);
     }
     b.finish(module)
@@ -208,8 +229,15 @@ mod tests {
     #[test]
     fn no_three_waves_nearly_close() {
         for seed in 0..5 {
-            let waves = Spectrum { waves: 32, bandwidth: 1.0, seed }.waves();
-            let least = (0..32).map(|i| nearest_triad(&waves[..i], waves[i].vector)).min();
+            let waves = Spectrum {
+                waves: 32,
+                bandwidth: 1.0,
+                seed,
+            }
+            .waves();
+            let least = (0..32)
+                .map(|i| nearest_triad(&waves[..i], waves[i].vector))
+                .min();
             // A sum shorter than 0.004 cycles per period locks phases over 250 periods.
             assert!(least.is_some_and(|d| d > 16), "seed {seed}: {least:?}");
         }

@@ -239,7 +239,10 @@ impl Reader {
                 if self.tables.insert(name.clone(), index).is_some() {
                     return Err(format!("two tables are called {name:?}"));
                 }
-                self.module.tables.push(Table { name, data: data.into() });
+                self.module.tables.push(Table {
+                    name,
+                    data: data.into(),
+                });
             }
             "function" => {
                 let name = cursor.name()?;

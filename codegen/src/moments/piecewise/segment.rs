@@ -80,9 +80,19 @@ impl Segment {
     }
 
     /// By truncated moments M_k = ∫ zᵏ φ dz over the segment and the Taylor series of s at m.
-    fn truncated(&self, b: &mut Builder, x: &Gaussian, m: Value, s: Value, inverse: Value) -> Moments {
+    fn truncated(
+        &self,
+        b: &mut Builder,
+        x: &Gaussian,
+        m: Value,
+        s: Value,
+        inverse: Value,
+    ) -> Moments {
         let (from, to) = (b.sub(x.mean, self.from), b.sub(x.mean, self.to));
-        let (n0, n1) = (Normal::at(b, from, x.inverse_sd), Normal::at(b, to, x.inverse_sd));
+        let (n0, n1) = (
+            Normal::at(b, from, x.inverse_sd),
+            Normal::at(b, to, x.inverse_sd),
+        );
         let (a, e) = (b.neg(n0.z), b.neg(n1.z));
         let (fa, fe) = (n0.density, n1.density);
         let m0 = probability(b, &n0, &n1);
@@ -126,7 +136,13 @@ impl Segment {
         let edge = b.mul(edge, inverse2);
         let third = b.sub(third, edge);
         let distortion = b.f32(0.0);
-        Moments { mean, slope, curvature, third, distortion }
+        Moments {
+            mean,
+            slope,
+            curvature,
+            third,
+            distortion,
+        }
     }
 }
 
