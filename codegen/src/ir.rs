@@ -25,6 +25,7 @@
 
 mod build;
 mod op;
+mod prune;
 #[cfg(test)]
 pub(crate) mod random;
 mod table;

@@ -293,6 +293,7 @@ impl<'a> Lower<'a> {
                 "the catalogue of the graph"
             );
             self.algebra.bent = false;
+            self.algebra.period = None;
             let mut bundle = (definition.lower)(self, node);
             assert_eq!(
                 bundle.len(),

@@ -79,6 +79,8 @@ pub struct Algebra {
     pub shares: bool,
     /// Whether an operation since this was last cleared was not linear in a signal with a spread.
     pub bent: bool,
+    /// The period of the last transfer that bent, where it has one.
+    pub(crate) period: Option<f32>,
     symbols: u32,
 }
 
@@ -90,6 +92,7 @@ impl Algebra {
             mode,
             shares: false,
             bent: false,
+            period: None,
             symbols: 0,
         }
     }

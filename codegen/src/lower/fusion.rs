@@ -24,6 +24,19 @@ pub(super) struct Chain {
     bends: u32,
     /// Whether no live parameter shapes it.
     fixed: bool,
+    /// The period of the function, where the entry is not bounded but the function repeats.
+    period: Option<f32>,
+}
+
+impl Chain {
+    /// The values of the entry that matter, if they are bounded.
+    fn domain(&self) -> Option<[f32; 2]> {
+        if let Some(period) = self.period {
+            return Some([0.0, period]);
+        }
+        let [low, high] = self.signal.range;
+        (low.is_finite() && high.is_finite() && low < high).then_some([low, high])
+    }
 }
 
 impl<'a> Compiler<'a> {
@@ -54,16 +67,46 @@ impl Lower<'_> {
         }
         let before = self.chain(node)?;
         let bends = before.bends + u32::from(self.algebra.bent);
+        if let (Some(period), true) = (
+            self.algebra.period.filter(|_| self.algebra.bent),
+            before.bends == 0 && before.domain().is_none(),
+        ) {
+            // A wave of something unbounded: whatever follows is a function of the phase alone.
+            self.chains[index] = self.wave(node, period);
+            return None;
+        }
         self.chains[index] = Some(Chain {
             bends,
             ..before.clone()
         });
-        let [low, high] = before.signal.range;
-        let bounded = low.is_finite() && high.is_finite() && low < high;
-        if !self.algebra.bent || before.bends == 0 || !before.fixed || !bounded {
+        let domain = before.domain()?;
+        if !self.algebra.bent || before.bends == 0 || !before.fixed {
             return None;
         }
-        Some(self.tabulated(index, closed, node, &before))
+        Some(self.tabulated(index, closed, node, &before, domain))
+    }
+
+    /// The chain that a periodic function of a scalar begins.
+    fn wave(&self, node: &Node, period: f32) -> Option<Chain> {
+        let mut entry = None;
+        let mut fixed = true;
+        for input in &node.inputs {
+            match input.source {
+                Source::Literal(_) => {}
+                Source::Parameter(_) => fixed = false,
+                Source::Node(id) if entry.is_none() => entry = Some(id),
+                Source::Node(_) | Source::Surface => return None,
+            }
+        }
+        let bundle = self.bundles[entry?.index()].as_ref()?;
+        let [signal] = &bundle[..] else { return None };
+        Some(Chain {
+            entry: entry?,
+            signal: Rc::new(signal.clone()),
+            bends: 1,
+            fixed,
+            period: Some(period),
+        })
     }
 
     /// The one signal that all varying inputs of a node are functions of.
@@ -103,6 +146,7 @@ impl Lower<'_> {
                         signal,
                         bends: 0,
                         fixed: true,
+                        period: None,
                     }
                 }
             };
@@ -119,12 +163,19 @@ impl Lower<'_> {
         chain.map(|chain| Chain { fixed, ..chain })
     }
 
-    fn tabulated(&mut self, index: usize, closed: &[Signal], node: &Node, chain: &Chain) -> Bundle {
+    fn tabulated(
+        &mut self,
+        index: usize,
+        closed: &[Signal],
+        node: &Node,
+        chain: &Chain,
+        domain: [f32; 2],
+    ) -> Bundle {
         let compiler = self.compiler;
-        let (entry, domain) = (chain.entry, chain.signal.range);
+        let (entry, periodic) = (chain.entry, chain.period.is_some());
         let known = compiler.fused.borrow().get(&index).cloned();
         let samples = known.unwrap_or_else(|| {
-            let samples = sample(compiler, index, entry, domain, closed.len());
+            let samples = sample(compiler, index, entry, (domain, periodic), closed.len());
             compiler
                 .fused
                 .borrow_mut()
@@ -143,7 +194,7 @@ impl Lower<'_> {
                     name.clone()
                 };
                 let of = (function.clone(), i);
-                let bounds = (domain, signal.range);
+                let bounds = (domain, periodic, signal.range);
                 let table = Tabulated::new(self.module, &name, of, bounds, &samples);
                 self.algebra.transfer(&chain.signal, &table)
             })
@@ -209,7 +260,7 @@ fn sample(
     compiler: &Compiler<'_>,
     index: usize,
     entry: NodeId,
-    domain: [f32; 2],
+    (domain, periodic): ([f32; 2], bool),
     components: usize,
 ) -> Samples {
     let mut module = Module::default();
@@ -222,6 +273,9 @@ fn sample(
         let inputs = [Input::Floats(&points)];
         evaluator.evaluate(&mut Scratch::new(), &inputs, points.len(), &mut values);
         values.truncate(components);
-        values.into_iter().map(Sampled::new).collect()
+        values
+            .into_iter()
+            .map(|values| Sampled::new(values, periodic))
+            .collect()
     })))
 }

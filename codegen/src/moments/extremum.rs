@@ -19,6 +19,7 @@ impl Algebra {
                 Signal {
                     mean,
                     range,
+                    binary: None,
                     hermite: None,
                     ..x.clone()
                 }

@@ -310,6 +310,13 @@ impl Transfer for Piecewise {
         out
     }
 
+    fn binary(&self, b: &Builder) -> Option<[f32; 2]> {
+        let [knot] = self.knots[..] else { return None };
+        let flat = b.is_zero(self.slope) && b.is_zero(knot.bend);
+        let low = b.as_constant(self.offset).filter(|_| flat)?;
+        Some([low, low + b.as_constant(knot.jump)?])
+    }
+
     fn range(&self, b: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
         // Linear between knots and monotone on smooth segments: the extremes are at knots (either
         // side) and at the ends.

@@ -1,5 +1,7 @@
 //! Products of signals.
 
+use crate::ir::{Builder, Value};
+
 use super::{Algebra, Mode, Signal, signal::UNBOUNDED};
 
 impl Algebra {
@@ -58,9 +60,20 @@ impl Algebra {
             b.add(rest, second)
         };
         out.range = product_range(x.range, y.range);
+        out.binary = product_binary(b, x, y);
         self.attach_fresh(&mut out, remainder);
         out
     }
+}
+
+/// The two values of the product of two waves between −p and p, −q and q: ±pq.
+fn product_binary(b: &mut Builder, x: &Signal, y: &Signal) -> Option<[Value; 2]> {
+    let amplitude = |signal: &Signal| {
+        let [low, high] = signal.binary?.map(|v| b.as_constant(v));
+        (low? == -high?).then_some(high?)
+    };
+    let product = amplitude(x)? * amplitude(y)?;
+    Some([-product, product].map(|v| b.f32(v)))
 }
 
 fn product_range(x: [f32; 2], y: [f32; 2]) -> [f32; 2] {

@@ -25,6 +25,9 @@ pub struct Signal {
     pub private: Value,
     /// The least and largest value that the signal takes at any point, as far as is known.
     pub range: [f32; 2],
+    /// The two values of a signal that takes no others, such as a step: every function of it is
+    /// linear.
+    pub binary: Option<[Value; 2]>,
     /// The symbol of this signal's second Hermite polynomial, where several transfers read it.
     pub hermite: Option<Symbol>,
 }
@@ -56,6 +59,7 @@ impl Signal {
             shared: SmallVec::new(),
             private: zero,
             range,
+            binary: None,
             hermite: None,
         }
     }
@@ -189,6 +193,7 @@ impl Signal {
             shared: self.shared.iter().map(|&(s, v)| (s, f(b, v))).collect(),
             private: private(b, self.private),
             range: UNBOUNDED,
+            binary: None,
             hermite: None,
         }
     }
@@ -214,6 +219,7 @@ impl Signal {
             }
             _ => UNBOUNDED,
         };
+        out.binary = self.binary.map(|values| values.map(|v| b.mul(v, by)));
         out
     }
 
@@ -231,6 +237,7 @@ impl Signal {
             mean,
             cell,
             range,
+            binary: self.binary.map(|values| values.map(|v| b.add(v, by))),
             hermite: None,
             ..self.clone()
         }
@@ -245,6 +252,12 @@ impl Signal {
     /// `X + Y`: coefficients add.
     pub fn add(&self, b: &mut Builder, other: &Self) -> Self {
         let (cell, mean) = position::add(b, (self.cell, self.mean), (other.cell, other.mean));
+        let mut binary = None;
+        for (x, y) in [(self, other), (other, self)] {
+            if let (Some(values), true) = (x.binary, y.is_certain(b) && y.cell.is_none()) {
+                binary = Some(values.map(|v| b.add(v, y.mean)));
+            }
+        }
         let mut shared = SmallVec::new();
         let (mut i, mut j) = (0, 0);
         while i < self.shared.len() || j < other.shared.len() {
@@ -284,6 +297,7 @@ impl Signal {
                 self.range[0] + other.range[0],
                 self.range[1] + other.range[1],
             ],
+            binary,
             hermite: None,
         }
     }

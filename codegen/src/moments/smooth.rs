@@ -76,6 +76,10 @@ impl Transfer for Sine {
     fn range(&self, _: &Builder, _: [f32; 2]) -> [f32; 2] {
         [-1.0, 1.0]
     }
+
+    fn period(&self) -> Option<f32> {
+        Some(std::f32::consts::TAU)
+    }
 }
 
 /// x to an integer power of 0 to [`Polynomial::MOST`]. Exact for a Gaussian: E[xⁿ] by Isserlis,

@@ -11,9 +11,9 @@ use std::sync::{Arc, LazyLock};
 
 /// σ₀, in domains.
 const FINEST: f64 = 0.004;
-/// How many levels: the coarsest σ is 0.004 · 2^{13/2} = 0.36 domains, ten of which hold the
-/// process's own σ.
-const LEVELS: usize = 14;
+/// How many levels: the coarsest σ is 0.004 · 2⁸ = 1.02 domains, over which a period is gone; ten
+/// standard deviations of a process are one domain.
+const LEVELS: usize = 17;
 /// Samples of the function over the domain; 8 a σ₀.
 const SAMPLES: usize = 2048;
 /// How far a Gaussian reaches, in σ.
@@ -25,6 +25,8 @@ pub(crate) struct Sampled {
     /// The values at the centres of [`SAMPLES`] cells of the domain, and their averages over 2, 4, …
     /// cells.
     mips: Vec<Vec<f64>>,
+    /// Whether the domain is one period.
+    periodic: bool,
 }
 
 /// Where to sample a function over a domain; beyond it the function is taken for constant.
@@ -37,7 +39,7 @@ pub(crate) fn sample_points(domain: [f32; 2]) -> Vec<f32> {
 
 impl Sampled {
     /// From the values at [`sample_points`].
-    pub(crate) fn new(values: Vec<f64>) -> Self {
+    pub(crate) fn new(values: Vec<f64>, periodic: bool) -> Self {
         assert_eq!(values.len(), SAMPLES, "samples of a function");
         let mut mips = vec![values];
         for _ in 0..LEVELS / 2 {
@@ -49,7 +51,7 @@ impl Sampled {
                     .collect(),
             );
         }
-        Self { mips }
+        Self { mips, periodic }
     }
 
     /// One moment's pyramid: all levels, finest first.
@@ -69,7 +71,14 @@ impl Sampled {
         let sd = (wanted * wanted - (1.0 - 1.0 / (cell * cell)) / 12.0).sqrt();
         let reach = (REACH * sd).ceil() as i64;
         let texels = texels(level);
-        let last = samples.len() as i64 - 1;
+        let count = samples.len() as i64;
+        let place = |i: i64| {
+            if self.periodic {
+                i.rem_euclid(count)
+            } else {
+                i.clamp(0, count - 1)
+            }
+        };
         (0..texels)
             .map(|texel| {
                 // Sample i stands at i + ½.
@@ -77,7 +86,7 @@ impl Sampled {
                 let middle = centre.round() as i64;
                 let near = (middle - reach..=middle + reach).map(|i| {
                     let z = (i as f64 - centre) / sd;
-                    let value = samples[i.clamp(0, last) as usize];
+                    let value = samples[place(i) as usize];
                     (z, (-0.5 * z * z).exp(), value)
                 });
                 let average = |f: &dyn Fn(f64, f64) -> f64| {
@@ -138,6 +147,7 @@ pub(crate) struct Tabulated {
     function: FunctionRef,
     component: usize,
     domain: [f32; 2],
+    periodic: bool,
     range: [f32; 2],
     /// The table of texel counts and offsets of the levels.
     levels: u32,
@@ -150,7 +160,7 @@ impl Tabulated {
         module: &mut Module,
         name: &str,
         (function, component): (FunctionRef, usize),
-        (domain, range): ([f32; 2], [f32; 2]),
+        (domain, periodic, range): ([f32; 2], bool, [f32; 2]),
         samples: &Samples,
     ) -> Self {
         let mut layout = Vec::new();
@@ -169,6 +179,7 @@ impl Tabulated {
             function,
             component,
             domain,
+            periodic,
             range,
             levels,
             tables,
@@ -191,9 +202,16 @@ impl Tabulated {
     fn place(&self, b: &mut Builder, x: &Gaussian) -> Place {
         let width = self.domain[1] - self.domain[0];
         let [low, high] = self.domain;
-        let inside = b.clamp(x.mean, low, high);
-        let u = b.offset(inside, -low);
-        let u = b.scale(u, 1.0 / width);
+        let u = if self.periodic {
+            let u = b.offset(x.mean, -low);
+            let u = b.scale(u, 1.0 / width);
+            let whole = b.floor(u);
+            b.sub(u, whole)
+        } else {
+            let inside = b.clamp(x.mean, low, high);
+            let u = b.offset(inside, -low);
+            b.scale(u, 1.0 / width)
+        };
         let s = b.scale(x.sd, 1.0 / width);
         let coarsest = sigma(LEVELS - 1) as f32;
         let ratio = b.clamp(s, FINEST as f32, coarsest);

@@ -1,6 +1,6 @@
 //! Functions of one signal: Stein's slope, Bussgang's distortion, and the third cumulant.
 
-use super::{Algebra, Mode, Signal};
+use super::{Algebra, Mode, Signal, signal::ordered};
 use crate::ir::{Builder, Value};
 
 /// The Gaussian that a transfer is averaged over.
@@ -43,6 +43,10 @@ pub trait Transfer {
     fn period(&self) -> Option<f32> {
         None
     }
+    /// The two values of a function that takes no others.
+    fn binary(&self, _: &Builder) -> Option<[f32; 2]> {
+        None
+    }
     /// The least and largest value on `[low, high]` (which may be infinite).
     fn range(&self, b: &Builder, input: [f32; 2]) -> [f32; 2];
 }
@@ -70,6 +74,9 @@ impl Algebra {
             let value = t.value(b, mean);
             return Signal::certain(b, value).with_range(range);
         }
+        if let Some(values) = x.binary {
+            return self.between(x, t, values);
+        }
         let x = &x.flat(b);
         let linear = x.linear_variance(b);
         let other = x.other_variance(b);
@@ -84,7 +91,10 @@ impl Algebra {
             range: x.range,
         };
         let m = t.moments(b, &gaussian);
-        self.bent |= !b.is_zero(m.distortion);
+        if !b.is_zero(m.distortion) {
+            self.bent = true;
+            self.period = t.period();
+        }
         let mut out = x.scale(b, m.slope);
         out.range = range;
         out.mean = m.mean;
@@ -134,7 +144,33 @@ impl Algebra {
             distortion = b.sub(distortion, second);
             distortion = b.max(distortion, zero);
         }
+        out.binary = t.binary(b).map(|values| values.map(|v| b.f32(v)));
         self.attach_fresh(&mut out, distortion);
+        out
+    }
+
+    /// T(X) of a signal that takes two values is linear in it: exact, whatever T is.
+    fn between(&mut self, x: &Signal, t: &dyn Transfer, [low, high]: [Value; 2]) -> Signal {
+        let b = &mut self.b;
+        let (at_low, at_high) = (t.value(b, low), t.value(b, high));
+        let (rise, span) = (b.sub(at_high, at_low), b.sub(high, low));
+        // Two equal values are one: then the rise is 0 as well.
+        let (zero, one) = (b.f32(0.0), b.f32(1.0));
+        let magnitude = b.abs(span);
+        let distinct = b.lt(zero, magnitude);
+        let span = b.select(distinct, span, one);
+        let slope = b.div(rise, span);
+        let mut out = x.scale(b, slope);
+        let mean = x.flat_mean(b);
+        let share = b.sub(mean, low);
+        let part = b.mul(share, slope);
+        out.mean = b.add(at_low, part);
+        out.cell = None;
+        out.binary = Some([at_low, at_high]);
+        out.range = match [at_low, at_high].map(|v| b.as_constant(v)) {
+            [Some(p), Some(q)] => ordered(p, q),
+            _ => t.range(b, x.range),
+        };
         out
     }
 }

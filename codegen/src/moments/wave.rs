@@ -145,4 +145,8 @@ impl Transfer for SquareWave {
     fn period(&self) -> Option<f32> {
         Some(1.0)
     }
+
+    fn binary(&self, _: &Builder) -> Option<[f32; 2]> {
+        Some([0.0, 1.0])
+    }
 }

@@ -1,0 +1,142 @@
+//! Removing what no result needs: instructions of a function, functions and tables of a module.
+
+use super::{Function, FunctionId, Inst, Module, Value};
+use rustc_hash::FxHashMap;
+
+/// The function without the instructions that no result needs; parameters stay.
+pub(super) fn without_dead_code(function: Function) -> Function {
+    let mut live = vec![false; function.insts.len()];
+    for &(_, value) in &function.results {
+        live[value.index()] = true;
+    }
+    for index in (0..function.insts.len()).rev() {
+        live[index] |= matches!(function.insts[index], Inst::Param(_));
+        if live[index] {
+            function.insts[index].operands(|v| live[v.index()] = true);
+        }
+    }
+    let mut moved = vec![Value(0); live.len()];
+    let (mut insts, mut types) = (Vec::new(), Vec::new());
+    for (index, mut inst) in function.insts.into_iter().enumerate() {
+        if live[index] {
+            renumber(&mut inst, |v| moved[v.index()]);
+            moved[index] = Value(insts.len() as u32);
+            insts.push(inst);
+            types.push(function.types[index]);
+        }
+    }
+    Function {
+        insts,
+        types,
+        names: (function.names.into_iter())
+            .filter(|(v, _)| live[v.index()])
+            .map(|(v, name)| (moved[v.index()], name))
+            .collect(),
+        results: (function.results.into_iter())
+            .map(|(n, v)| (n, moved[v.index()]))
+            .collect(),
+        ..function
+    }
+}
+
+impl Module {
+    /// The module without the functions that the entry does not reach and the tables that they do
+    /// not read, each name used once.
+    pub fn pruned(mut self) -> Self {
+        let mut live = vec![false; self.functions.len()];
+        if let Some(entry) = live.last_mut() {
+            *entry = true;
+        }
+        for index in (0..self.functions.len()).rev() {
+            if live[index] {
+                for inst in &self.functions[index].insts {
+                    if let Inst::Call(f, _) | Inst::Fold { function: f, .. } = inst {
+                        live[f.index()] = true;
+                    }
+                }
+            }
+        }
+        let mut moved = Vec::with_capacity(live.len());
+        let mut next = 0;
+        for &keep in &live {
+            moved.push(FunctionId(next));
+            next += u32::from(keep);
+        }
+        let mut index = 0;
+        self.functions.retain(|_| {
+            index += 1;
+            live[index - 1]
+        });
+        self.prune_tables();
+        let mut taken: FxHashMap<String, u32> = FxHashMap::default();
+        // The entry keeps its name.
+        for function in self.functions.iter_mut().rev() {
+            for inst in &mut function.insts {
+                if let Inst::Call(f, _) | Inst::Fold { function: f, .. } = inst {
+                    *f = moved[f.index()];
+                }
+            }
+            let count = taken.entry(function.name.clone()).or_default();
+            *count += 1;
+            if *count > 1 {
+                function.name = format!("{}_{count}", function.name);
+            }
+        }
+        self
+    }
+
+    fn prune_tables(&mut self) {
+        let loads = |functions: &[Function]| -> Vec<u32> {
+            (functions.iter().flat_map(|f| &f.insts))
+                .filter_map(|inst| match inst {
+                    Inst::Load(table, _) => Some(*table),
+                    _ => None,
+                })
+                .collect()
+        };
+        let mut moved = vec![None; self.tables.len()];
+        let mut read = loads(&self.functions);
+        read.sort_unstable();
+        read.dedup();
+        for (place, &table) in (0u32..).zip(&read) {
+            moved[table as usize] = Some(place);
+        }
+        let mut taken: FxHashMap<String, u32> = FxHashMap::default();
+        let tables = std::mem::take(&mut self.tables);
+        self.tables = (tables.into_iter().zip(&moved))
+            .filter_map(|(table, place)| place.is_some().then_some(table))
+            .collect();
+        for table in &mut self.tables {
+            let count = taken.entry(table.name.clone()).or_default();
+            *count += 1;
+            if *count > 1 {
+                table.name = format!("{}_{count}", table.name);
+            }
+        }
+        for inst in self.functions.iter_mut().flat_map(|f| &mut f.insts) {
+            if let Inst::Load(table, _) = inst {
+                *table = moved[*table as usize].expect("a table that is read");
+            }
+        }
+    }
+}
+
+/// Replaces every operand of an instruction.
+fn renumber(inst: &mut Inst, to: impl Fn(Value) -> Value) {
+    match inst {
+        Inst::Const(_) | Inst::Param(_) => {}
+        Inst::Op(_, operands) => operands.iter_mut().for_each(|v| *v = to(*v)),
+        Inst::Load(_, index) => *index = to(*index),
+        Inst::Call(_, arguments) => arguments.iter_mut().for_each(|v| *v = to(*v)),
+        Inst::Fold {
+            count,
+            init,
+            captures,
+            ..
+        } => {
+            *count = to(*count);
+            init.iter_mut().chain(captures).for_each(|v| *v = to(*v));
+        }
+        Inst::Result(of, _) => *of = to(*of),
+    }
+}
