@@ -35,11 +35,6 @@ pub const SIGNIFICANCE: f64 = 1e-3;
 /// distributions from a Gaussian (0.0046 of each jump, four jumps in a ramp).
 pub const FAR_FIELD: f64 = 0.02;
 
-/// The same for graphs with waves of position. Their chains are closed node by node, and the far
-/// field of a sine is an arcsine distribution, whose CDF is up to 0.097 from the normal one of its
-/// variance: the error of a unit step that reads it.
-pub const FAR_FIELD_OF_WAVES: f64 = 0.1;
-
 /// The two-sided p-value of a standard normal number, from above: Mills' ratio is at most 1/z.
 pub fn p_value(z: f64) -> f64 {
     let z = z.abs();
