@@ -109,7 +109,7 @@ fn errors(claim: &Claim, size: f64, ratio: f64, degrees: f64, methods: &[Method]
     let minor = size * claim.wavelength;
     let major = minor * ratio;
     let axes = [[major * cos, major * sin], [-minor * sin, minor * cos]];
-    let places = positions(16);
+    let places = positions(40);
     let footprints: Vec<Footprint> = (places.iter())
         .map(|p| Footprint {
             cell: p.map(|x| x.floor() as i32),
@@ -156,9 +156,9 @@ fn filtered_means_are_those_of_dense_integration() {
 
 #[test]
 fn local_deviations_beat_one_variance_per_footprint() {
-    // Ensemble's error at these sizes is 0.44, 0.40 and 0.38 (measured with a band of cosines). Over 16 places; over many the
-    // figures are 0.7 to 0.9 of these bounds.
-    for (size, local, quad) in [(0.02, 0.015, 0.003), (0.05, 0.04, 0.006), (0.1, 0.1, 0.025)] {
+    // Ensemble's error at these sizes is 0.44, 0.40 and 0.38 (measured with a band of cosines). Over 40 places, the
+    // figures are up to 0.9 of these bounds.
+    for (size, local, quad) in [(0.02, 0.01, 0.002), (0.05, 0.035, 0.005), (0.1, 0.09, 0.02)] {
         for claim in &CLAIMS {
             let methods = [Method::Ensemble, Method::Local, Method::Quad];
             let found = errors(claim, size, 1.0, 0.0, &methods);
