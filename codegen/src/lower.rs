@@ -20,7 +20,7 @@ use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
 };
 use rustc_hash::FxHashMap;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 /// The components of a node's output.
 pub type Bundle = Vec<Signal>;
@@ -95,6 +95,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         literal,
         functions,
         fused,
+        levels: Cell::new(None),
     };
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
@@ -153,6 +154,8 @@ struct Compiler<'a> {
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
     fused: RefCell<FxHashMap<usize, Samples>>,
+    /// The table of levels that pyramids share, once there is one.
+    levels: Cell<Option<u32>>,
 }
 
 /// The parameters of an entry or of a function that stands for the graph.

@@ -13,6 +13,9 @@ use mipless_graph::{Node, NodeId, Source};
 use std::rc::Rc;
 use std::sync::{Arc, LazyLock};
 
+/// The most functions that are not linear in one region.
+const LONGEST: u32 = 12;
+
 /// That a node is a function of one scalar signal alone.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
@@ -54,6 +57,7 @@ impl<'a> Compiler<'a> {
             literal: self.literal.clone(),
             functions: Default::default(),
             fused: Default::default(),
+            levels: Default::default(),
         }
     }
 }
@@ -75,10 +79,14 @@ impl Lower<'_> {
             self.chains[index] = self.wave(node, period);
             return None;
         }
-        self.chains[index] = Some(Chain {
-            bends,
-            ..before.clone()
-        });
+        // Beyond this many bends the result is the entry of what follows: a chain of 10,000 nodes
+        // stays linear.
+        if bends < LONGEST {
+            self.chains[index] = Some(Chain {
+                bends,
+                ..before.clone()
+            });
+        }
         let domain = before.domain()?;
         if !self.algebra.bent || before.bends == 0 || !before.fixed {
             return None;
@@ -182,6 +190,11 @@ impl Lower<'_> {
                 .insert(index, Arc::clone(&samples));
             samples
         });
+        let levels = compiler
+            .levels
+            .get()
+            .unwrap_or_else(|| Tabulated::levels(self.module));
+        compiler.levels.set(Some(levels));
         let name = super::identifier(&node.name);
         let function = self.function(&format!("fused {index}"), |module| {
             function(compiler, module, index, entry)
@@ -195,7 +208,7 @@ impl Lower<'_> {
                 };
                 let of = (function.clone(), i);
                 let bounds = (domain, periodic, signal.range);
-                let table = Tabulated::new(self.module, &name, of, bounds, &samples);
+                let table = Tabulated::new(self.module, levels, &name, of, bounds, &samples);
                 self.algebra.transfer(&chain.signal, &table)
             })
             .collect()

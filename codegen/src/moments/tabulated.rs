@@ -1,6 +1,6 @@
 //! Functions of one signal by tables: a σ-pyramid for each moment, baked in f64.
 //!
-//! Level l holds the moment at σ_l = σ₀ 2^{l/2} on a grid of spacing σ_l/2 over the domain, read
+//! Level l holds the moment at σ_l = σ₀ 2^{l/2} on a grid of at most σ_l/2 over the domain, read
 //! linearly in position and in σ; below σ₀ the function itself is the other end (DESIGN §7; MATH
 //! §6: 8.7 KB a moment, largest error 14/1000 on ten-stripe maps). The k-th derivative of the mean
 //! is stored as σᵏ E[T⁽ᵏ⁾] = E[T Heₖ(z)], the distortion as its root.
@@ -61,7 +61,7 @@ impl Sampled {
             .collect()
     }
 
-    /// One level, from the samples that are 8 or 11 a σ.
+    /// One level, from the samples that are 8 or 11 a σ; every texel has the same weights.
     fn level(&self, level: usize, moment: Moment) -> Vec<f32> {
         let mip = level / 2;
         let samples = &self.mips[mip];
@@ -70,49 +70,54 @@ impl Sampled {
         let wanted = sigma(level) * SAMPLES as f64 / cell;
         let sd = (wanted * wanted - (1.0 - 1.0 / (cell * cell)) / 12.0).sqrt();
         let reach = (REACH * sd).ceil() as i64;
-        let texels = texels(level);
-        let count = samples.len() as i64;
-        let place = |i: i64| {
-            if self.periodic {
-                i.rem_euclid(count)
-            } else {
-                i.clamp(0, count - 1)
-            }
+        // Sample i stands at i + ½, texel j at 4j: the score of sample 4j + k is (k + ½)/σ.
+        let scores: Vec<f64> = (-reach..reach).map(|k| (k as f64 + 0.5) / sd).collect();
+        let mut weights: Vec<f64> = scores.iter().map(|z| (-0.5 * z * z).exp()).collect();
+        let total: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|w| *w /= total);
+        let weighted = |f: fn(f64) -> f64| -> Vec<f64> {
+            scores
+                .iter()
+                .zip(&weights)
+                .map(|(&z, w)| f(z) * w)
+                .collect()
         };
-        (0..texels)
+        let first = weighted(|z| z);
+        let kernel = match moment {
+            Moment::Mean | Moment::Distortion => weights.clone(),
+            Moment::Slope => first.clone(),
+            Moment::Curvature => weighted(|z| z * z - 1.0),
+            Moment::Third => weighted(|z| z * (z * z - 3.0)),
+        };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let count = samples.len() as i64;
+        let mut near = vec![0.0; scores.len()];
+        (0..texels(level) as i64)
             .map(|texel| {
-                // Sample i stands at i + ½.
-                let centre = texel as f64 / (texels - 1) as f64 * samples.len() as f64 - 0.5;
-                let middle = centre.round() as i64;
-                let near = (middle - reach..=middle + reach).map(|i| {
-                    let z = (i as f64 - centre) / sd;
-                    let value = samples[place(i) as usize];
-                    (z, (-0.5 * z * z).exp(), value)
-                });
-                let average = |f: &dyn Fn(f64, f64) -> f64| {
-                    let (sum, total) = near.clone().fold((0.0, 0.0), |(sum, total), (z, w, v)| {
-                        (sum + w * f(z, v), total + w)
-                    });
-                    sum / total
-                };
-                (match moment {
-                    Moment::Mean => average(&|_, v| v),
-                    Moment::Slope => average(&|z, v| z * v),
-                    Moment::Curvature => average(&|z, v| (z * z - 1.0) * v),
-                    Moment::Third => average(&|z, v| z * (z * z - 3.0) * v),
-                    Moment::Distortion => {
-                        let (mean, slope) = (average(&|_, v| v), average(&|z, v| z * v));
-                        average(&|z, v| (v - mean - slope * z).powi(2)).sqrt()
-                    }
-                }) as f32
+                for (value, i) in near.iter_mut().zip(4 * texel - reach..) {
+                    let place = if self.periodic {
+                        i.rem_euclid(count)
+                    } else {
+                        i.clamp(0, count - 1)
+                    };
+                    *value = samples[place as usize];
+                }
+                let sum = dot(&kernel, &near);
+                if moment != Moment::Distortion {
+                    return sum as f32;
+                }
+                let slope = dot(&first, &near);
+                let residuals = (near.iter().zip(&scores).zip(&weights))
+                    .map(|((v, z), w)| w * (v - sum - slope * z).powi(2));
+                residuals.sum::<f64>().sqrt() as f32
             })
             .collect()
     }
 }
 
-/// Texels of a level: its grid covers the domain with spacing σ/2.
+/// Texels of a level: its grid covers the domain with a texel for every 4 samples, 0.49 or 0.35 σ.
 fn texels(level: usize) -> usize {
-    (2.0 / sigma(level)).ceil() as usize + 1
+    (SAMPLES >> (level / 2)) / 4 + 1
 }
 
 /// σ of a level, in domains.
@@ -155,21 +160,27 @@ pub(crate) struct Tabulated {
 }
 
 impl Tabulated {
-    /// `function` takes a number and gives the components; `range` bounds this one.
-    pub(crate) fn new(
-        module: &mut Module,
-        name: &str,
-        (function, component): (FunctionRef, usize),
-        (domain, periodic, range): ([f32; 2], bool, [f32; 2]),
-        samples: &Samples,
-    ) -> Self {
+    /// The table of texel counts and offsets of the levels, which all pyramids share.
+    pub(crate) fn levels(module: &mut Module) -> u32 {
         let mut layout = Vec::new();
         let mut total = 0;
         for level in 0..LEVELS {
             layout.extend([texels(level) as f32, total as f32]);
             total += texels(level);
         }
-        let levels = module.table("pyramid_levels", layout);
+        module.table("pyramid_levels", layout)
+    }
+
+    /// `levels` is the table that [`Self::levels`] made; `function` takes a number and gives the components; `range` bounds this one.
+    pub(crate) fn new(
+        module: &mut Module,
+        levels: u32,
+        name: &str,
+        (function, component): (FunctionRef, usize),
+        (domain, periodic, range): ([f32; 2], bool, [f32; 2]),
+        samples: &Samples,
+    ) -> Self {
+        let total = (0..LEVELS).map(texels).sum();
         let tables = MOMENTS.map(|(moment, suffix)| {
             let samples = Arc::clone(samples);
             let bake = move || samples[component].pyramid(moment);
