@@ -15,7 +15,7 @@ pub use method::{Method, ParseMethodError, PixelFilter};
 use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
 };
-use crate::moments::{Algebra, Mode, Samples, Signal, Symbol};
+use crate::moments::{Algebra, Mode, Samples, Signal, Symbol, scale_function};
 use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
 };
@@ -223,7 +223,10 @@ pub struct Lower<'a> {
 impl<'a> Lower<'a> {
     fn new(compiler: &'a Compiler<'a>, module: &'a mut Module, mut b: Builder, mode: Mode) -> Self {
         let arguments = Arguments::declare(&mut b, compiler.graph);
-        Self::with(compiler, module, Algebra::new(b, mode), arguments)
+        let mut lower = Self::with(compiler, module, Algebra::new(b, mode), arguments);
+        let scale = lower.function("scale_position", scale_function);
+        lower.b().scale_position = Some(scale);
+        lower
     }
 
     fn with(

@@ -34,6 +34,7 @@ use crate::ir::{Builder, Value};
 
 pub use normal::Normal;
 pub use piecewise::{Knot, Piecewise, Shape};
+pub(crate) use position::scale_function;
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
 pub(crate) use tabulated::{Sampled, Samples, Tabulated, sample_points};

@@ -34,6 +34,8 @@ pub struct Builder {
     function: Function,
     /// The definitions by their hash: equal instructions are found, not stored twice.
     cons: HashTable<u32>,
+    /// The module's function that multiplies a position, where the module has it.
+    pub(crate) scale_position: Option<FunctionRef>,
 }
 
 impl Builder {
@@ -50,6 +52,7 @@ impl Builder {
                 results: Vec::new(),
             },
             cons: HashTable::new(),
+            scale_position: None,
         }
     }
 
