@@ -13,6 +13,9 @@ use std::f32::consts::TAU;
 /// Wave vectors are integers over this.
 const GRID: i32 = 1024;
 
+/// The parts of a field.
+const PARTS: [&str; 7] = ["mean", "dx", "dy", "dxx", "dxy", "dyy", "rest"];
+
 /// What a spectral noise is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spectrum {
@@ -117,7 +120,24 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], spectrum: Spe
         arguments.push(axis.mean);
     }
     arguments.extend(spread.covariance);
-    let sums = b.call(&function, &arguments);
+    let sums = if mode.filters() {
+        // Where even the lowest wave is damped by e⁻²⁰ nothing but the variance is left.
+        let lowest = TAU * (-0.5 * bandwidth).exp2();
+        let damping = b.scale(spread.eigenvalues[1], 0.5 * lowest * lowest);
+        let (limit, none, once) = (b.f32(20.0), b.u32(0), b.u32(1));
+        let is_left = b.lt(damping, limit);
+        let count = b.select(is_left, once, none);
+        let (zero, one) = (b.f32(0.0), b.f32(1.0));
+        let rest = if mode.spreads() { one } else { zero };
+        b.fold(
+            &function,
+            count,
+            &[zero, zero, zero, zero, zero, zero, rest],
+            &arguments,
+        )
+    } else {
+        b.call(&function, &arguments)
+    };
     let [mean, dx, dy, dxx, dxy, dyy, rest] = sums[..] else {
         panic!("a field has seven parts")
     };
@@ -131,6 +151,13 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], spectrum: Spe
 
 fn build(module: &mut Module, mode: Mode, spectrum: Spectrum) -> FunctionRef {
     let mut b = Builder::new("spectral", "A sum of filtered cosines with random phases.");
+    if mode.filters() {
+        // The body of a fold of at most one turn: the state is replaced.
+        b.param("index", Type::U32);
+        for name in PARTS {
+            b.param_f32(format!("state_{name}"));
+        }
+    }
     let cell_x = b.param("cell_x", Type::I32);
     let x = b.param_f32("x");
     let cell_y = b.param("cell_y", Type::I32);
@@ -187,10 +214,7 @@ fn build(module: &mut Module, mode: Mode, spectrum: Spectrum) -> FunctionRef {
             *sum = b.add(*sum, part);
         }
     }
-    for (name, sum) in ["mean", "dx", "dy", "dxx", "dxy", "dyy", "rest"]
-        .into_iter()
-        .zip(sums)
-    {
+    for (name, sum) in PARTS.into_iter().zip(sums) {
         b.result(name, sum);
     }
     b.finish(module)
