@@ -549,10 +549,4 @@ impl<'a> Lower<'a> {
     pub fn source_footprint(&mut self, wavelengths: Value) {
         self.footprints.push(wavelengths);
     }
-
-    /// Reports that the node is not linear in a signal with a spread. The algebra's operations do
-    /// so themselves.
-    pub fn bends(&mut self) {
-        self.algebra.bent = true;
-    }
 }

@@ -45,9 +45,6 @@ pub(crate) fn ternary(
 
 /// T(X).
 pub(crate) fn transfer(lower: &mut Lower<'_>, x: &Signal, t: &dyn Transfer) -> Signal {
-    if !x.is_certain(lower.b()) {
-        lower.bends();
-    }
     lower.algebra.transfer(x, t)
 }
 
@@ -60,9 +57,6 @@ pub(crate) fn product(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
     }
     if x.cell.is_none() && x.is_certain(b) {
         return y.scale(b, x.mean);
-    }
-    if !x.is_certain(b) && !y.is_certain(b) {
-        lower.bends();
     }
     lower.algebra.product(x, y)
 }
@@ -114,19 +108,10 @@ pub(crate) fn numbers(lower: &mut Lower<'_>, node: &Node, port: &str) -> Vec<Val
 
 /// max(X, Y).
 pub(crate) fn maximum(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
-    bends_between(lower, x, y);
     lower.algebra.maximum(x, y)
 }
 
 /// min(X, Y).
 pub(crate) fn minimum(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
-    bends_between(lower, x, y);
     lower.algebra.minimum(x, y)
-}
-
-fn bends_between(lower: &mut Lower<'_>, x: &Signal, y: &Signal) {
-    let b = lower.b();
-    if !x.is_certain(b) || !y.is_certain(b) {
-        lower.bends();
-    }
 }

@@ -380,6 +380,19 @@ impl Builder {
         self.add(a, by)
     }
 
+    /// A bijection of 32-bit words without visible structure (Wellons's lowbias32), the hash of all
+    /// noises and samples.
+    pub fn scramble(&mut self, mut x: Value) -> Value {
+        for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b), (16, 1)] {
+            let by = self.u32(shift);
+            let shifted = self.shr_u(x, by);
+            x = self.xor_u(x, shifted);
+            let factor = self.u32(factor);
+            x = self.mul_u(x, factor);
+        }
+        x
+    }
+
     /// The square.
     pub fn square(&mut self, a: Value) -> Value {
         self.mul(a, a)

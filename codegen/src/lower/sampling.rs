@@ -62,11 +62,11 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     let mut hash = b.u32(compiler.options.seed ^ 0x9e37_79b9);
     for word in [cell_x, cell_y, u, v] {
         hash = b.xor_u(hash, word);
-        hash = scramble(&mut b, hash);
+        hash = b.scramble(hash);
     }
     let other = b.u32(0x68bc_21eb);
     let second = b.xor_u(hash, other);
-    let second = scramble(&mut b, second);
+    let second = b.scramble(second);
     let zero = b.f32(0.0);
     let count = b.u32(samples);
     let mut captures = vec![hash, second];
@@ -101,18 +101,6 @@ fn displace(b: &mut Builder, all: &mut [Value], pixels: [Value; 2]) {
         all[i] = b.add_i(all[i], whole);
         all[2 + i] = b.add(all[2 + i], fraction);
     }
-}
-
-/// The finaliser of Murmur's family with Wellons's constants (lowbias32).
-fn scramble(b: &mut Builder, mut x: Value) -> Value {
-    for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b), (16, 1)] {
-        let by = b.u32(shift);
-        let shifted = b.shr_u(x, by);
-        x = b.xor_u(x, shifted);
-        let factor = b.u32(factor);
-        x = b.mul_u(x, factor);
-    }
-    x
 }
 
 /// The offset of a sample inside the pixel, in pixels.

@@ -1,18 +1,6 @@
-//! Integer hashes, identical on every back end.
+//! What a hash of a lattice point decides, identical on every back end.
 
 use mipless_codegen::ir::{Builder, Value};
-
-/// A bijection of 32-bit words without visible structure (Wellons's lowbias32).
-pub(crate) fn scramble(b: &mut Builder, mut x: Value) -> Value {
-    for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b), (16, 1)] {
-        let by = b.u32(shift);
-        let shifted = b.shr_u(x, by);
-        x = b.xor_u(x, shifted);
-        let factor = b.u32(factor);
-        x = b.mul_u(x, factor);
-    }
-    x
-}
 
 /// (cos θ, sin θ) of a uniform angle, from the bits of a hash: a parabola refined once, within
 /// 1.1e-3 of the circle. It defines the noise; nothing else depends on it.

@@ -8,7 +8,7 @@
 mod energy;
 
 use super::field::{Field, Spread};
-use super::hash::{direction, scramble};
+use super::hash::direction;
 use energy::energies;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -96,7 +96,7 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
         init.push(fraction);
     }
     let seed = b.u32(octaves.seed as u32);
-    let seed = scramble(b, seed);
+    let seed = b.scramble(seed);
     init.extend([b.f32(1.0), b.f32(1.0), seed]);
     let mut captures = Vec::new();
     if mode != Mode::Point {
@@ -196,7 +196,7 @@ fn angle(b: &mut Builder, cell: Value, column: Value, row_hash: Value) -> [Value
     let column = b.add_i(cell, column);
     let column = b.cast_u(column);
     let hash = b.xor_u(column, row_hash);
-    let hash = scramble(b, hash);
+    let hash = b.scramble(hash);
     direction(b, hash)
 }
 
