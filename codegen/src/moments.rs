@@ -17,6 +17,7 @@
 //!   0 and vanish when the function is built.
 //! - What no result reads does not exist: a moment that is not demanded is dead code.
 
+mod curve;
 mod extremum;
 mod normal;
 mod piecewise;
@@ -32,14 +33,15 @@ mod wave;
 
 use crate::ir::{Builder, Value};
 
+pub use curve::Curve;
 pub use normal::Normal;
-pub use piecewise::{Knot, Piecewise, Shape};
+pub use piecewise::{Bump, Knot, Piecewise, Shape};
 pub(crate) use position::scale_function;
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
 pub(crate) use tabulated::{Sampled, Samples, Tabulated, sample_points};
 pub use transfer::{Gaussian, Moments, Transfer};
-pub use wave::SquareWave;
+pub use wave::{Corner, LinearWave, SquareWave};
 
 /// Which moments signals carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
