@@ -9,32 +9,42 @@ mod page;
 
 mod absval;
 mod add;
+mod ceil;
 mod checkerboard;
 mod clamp;
 mod colorramp;
 mod combine3;
 mod constant;
+mod cos;
 mod divide;
 mod extract;
+mod floor;
+mod fract;
 mod fractal2d;
 mod invert;
 mod luminance;
 mod max;
 mod min;
 mod mix;
+mod modulo;
 mod multiply;
 mod noise2d;
 mod place2d;
 mod power;
+mod quantize;
 mod range;
 mod rotate2d;
+mod round;
+mod sign;
 mod sin;
 mod smoothstep;
 mod spectralnoise2d;
+mod squarewave;
 mod step;
 mod stripes;
 mod subtract;
 mod texcoord;
+mod trianglewave;
 
 pub use page::{describe, page};
 
@@ -63,13 +73,23 @@ static CATALOGUE: &[NodeDef] = &[
     subtract::DEF,
     // Transfer.
     absval::DEF,
+    ceil::DEF,
     clamp::DEF,
+    cos::DEF,
+    floor::DEF,
+    fract::DEF,
     invert::DEF,
+    modulo::DEF,
     power::DEF,
+    quantize::DEF,
     range::DEF,
+    round::DEF,
+    sign::DEF,
     sin::DEF,
     smoothstep::DEF,
+    squarewave::DEF,
     step::DEF,
+    trianglewave::DEF,
     // Color.
     colorramp::DEF,
     luminance::DEF,

@@ -334,6 +334,27 @@ impl Signal {
         self.shared.insert(at, (symbol, coefficient));
     }
 
+    /// Makes one symbol, the first, of those of `symbols` that the signal carries.
+    pub(crate) fn merge(&mut self, b: &mut Builder, symbols: &[Symbol]) {
+        let mine: Vec<(Symbol, Value)> = (self.shared.iter().copied())
+            .filter(|(symbol, _)| symbols.contains(symbol))
+            .collect();
+        let [(first, start), rest @ ..] = &mine[..] else {
+            return;
+        };
+        if rest.is_empty() {
+            return;
+        }
+        let mut sum = b.square(*start);
+        for (_, coefficient) in rest {
+            let square = b.square(*coefficient);
+            sum = b.add(sum, square);
+        }
+        let (first, root) = (*first, b.sqrt(sum));
+        self.shared.retain(|(symbol, _)| !symbols.contains(symbol));
+        self.push_shared(first, root);
+    }
+
     /// Folds a shared symbol into the private variance.
     pub fn retire(&mut self, b: &mut Builder, symbol: Symbol) {
         if let Some(at) = self.shared.iter().position(|&(s, _)| s == symbol) {

@@ -1,4 +1,4 @@
-//! Smooth transfers: sine, integer and real powers, the reciprocal.
+//! Smooth transfers: sine, exponential, integer and real powers, the reciprocal.
 
 use super::{
     Curve, Gaussian, Moments, Transfer,
@@ -79,6 +79,59 @@ impl Transfer for Sine {
 
     fn period(&self) -> Option<f32> {
         Some(std::f32::consts::TAU)
+    }
+}
+
+/// eˣ. E = M = e^{m + v/2}, D = M²(eᵛ − 1 − v); exact for a Gaussian.
+#[derive(Clone, Copy, Debug)]
+pub struct Exponential;
+
+impl Transfer for Exponential {
+    fn value(&self, b: &mut Builder, x: Value) -> Value {
+        let x = b.clamp(x, -80.0, 80.0);
+        b.exp(x)
+    }
+
+    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
+        let half = b.scale(x.variance, 0.5);
+        let exponent = b.add(x.mean, half);
+        let mean = self.value(b, exponent);
+        // eᵛ − 1 − v = v²/2 (1 + v/3 (1 + v/4 (1 + …))): by its series below 1, where it cancels.
+        let v = x.variance;
+        let one = b.f32(1.0);
+        let mut series = one;
+        for k in (3..=9).rev() {
+            let term = b.scale(v, 1.0 / k as f32);
+            let term = b.mul(term, series);
+            series = b.add(one, term);
+        }
+        let square = b.square(v);
+        let square = b.scale(square, 0.5);
+        let series = b.mul(square, series);
+        let direct = self.value(b, v);
+        let beyond = b.offset(v, 1.0);
+        let direct = b.sub(direct, beyond);
+        let small = b.lt(v, one);
+        let excess = b.select(small, series, direct);
+        let zero = b.f32(0.0);
+        let excess = b.max(excess, zero);
+        // M · (M · excess): the square of M alone overflows first.
+        let distortion = b.mul(mean, excess);
+        Moments {
+            mean,
+            slope: mean,
+            curvature: mean,
+            third: mean,
+            distortion: b.mul(mean, distortion),
+        }
+    }
+
+    fn range(&self, _: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
+        if high > 80.0 {
+            [low.exp(), f32::INFINITY]
+        } else {
+            [low.exp(), high.exp()]
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! contribute to a signal of spread σ is E[T′]σ, E[T″]σ² and E[T‴]σ³, and the distortion's part is
 //! √D. So one tolerance a transfer holds all five over every σ.
 
+mod curves;
 mod piecewise;
 mod waves;
 
