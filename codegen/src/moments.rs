@@ -23,6 +23,7 @@ mod normal;
 mod piecewise;
 mod position;
 mod product;
+mod selection;
 mod signal;
 mod smooth;
 mod tabulated;

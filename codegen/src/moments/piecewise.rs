@@ -13,6 +13,7 @@ use super::{Gaussian, Moments, Normal, Transfer, signal::UNBOUNDED};
 use crate::ir::{Builder, Value};
 use segment::Segment;
 
+pub(super) use distortion::Residual;
 pub use segment::Bump;
 pub(super) use segment::probability;
 
@@ -49,6 +50,22 @@ impl Piecewise {
             at,
             jump: one,
             bend: zero,
+        }];
+        Self {
+            offset: zero,
+            slope: zero,
+            knots,
+            bumps: Vec::new(),
+        }
+    }
+
+    /// max(x, 0).
+    pub fn hinge(b: &mut Builder) -> Self {
+        let (zero, one) = (b.f32(0.0), b.f32(1.0));
+        let knots = vec![Knot {
+            at: zero,
+            jump: zero,
+            bend: one,
         }];
         Self {
             offset: zero,

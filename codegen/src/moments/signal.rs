@@ -243,6 +243,38 @@ impl Signal {
         }
     }
 
+    /// `other` where the condition holds, else this.
+    pub(super) fn select(&self, b: &mut Builder, condition: Value, other: &Self) -> Self {
+        let (x, y) = (self.flat(b), other.flat(b));
+        let zero = b.f32(0.0);
+        let mut symbols: SmallVec<[Symbol; 4]> = (x.shared.iter().chain(&y.shared))
+            .map(|&(symbol, _)| symbol)
+            .collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        let shared = symbols.into_iter().map(|symbol| {
+            let [c, d] = [&x, &y].map(|signal| signal.coefficient(symbol).unwrap_or(zero));
+            (symbol, b.select(condition, d, c))
+        });
+        let shared = shared.collect();
+        let mut pick = |c: Value, d: Value| b.select(condition, d, c);
+        Self {
+            mean: pick(x.mean, y.mean),
+            cell: None,
+            g: [pick(x.g[0], y.g[0]), pick(x.g[1], y.g[1])],
+            h: [
+                pick(x.h[0], y.h[0]),
+                pick(x.h[1], y.h[1]),
+                pick(x.h[2], y.h[2]),
+            ],
+            shared,
+            private: pick(x.private, y.private),
+            range: [x.range[0].min(y.range[0]), x.range[1].max(y.range[1])],
+            binary: None,
+            hermite: None,
+        }
+    }
+
     /// `−X`.
     pub fn negate(&self, b: &mut Builder) -> Self {
         let minus = b.f32(-1.0);

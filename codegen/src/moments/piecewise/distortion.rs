@@ -94,6 +94,22 @@ impl Piecewise {
     }
 }
 
+/// A residual e + f z.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Residual {
+    /// e.
+    pub(in super::super) constant: Value,
+    /// f.
+    pub(in super::super) slope: Value,
+}
+
+impl Residual {
+    /// ∫ (e + f z)² φ between two edges, at least 0.
+    pub(in super::super) fn between(self, b: &mut Builder, from: &Normal, to: &Normal) -> Value {
+        inner(b, from, to, self.constant, self.slope, None)
+    }
+}
+
 /// ∫ (e + f z)² φ over a piece with truncated moments p, M₁, M₂: p[(e + fμ)² + f² ν].
 fn closed(b: &mut Builder, p: Value, first: Value, second: Value, e: Value, f: Value) -> Value {
     let least = b.f32(1e-20);
