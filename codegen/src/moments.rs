@@ -17,6 +17,7 @@
 //!   0 and vanish when the function is built.
 //! - What no result reads does not exist: a moment that is not demanded is dead code.
 
+mod cubature;
 mod curve;
 mod extremum;
 mod normal;

@@ -28,7 +28,7 @@ static SPEC: NodeSpec = NodeSpec {
         PortSpec::new("pivot", PortType::Any, Default::Float(0.5), "What stays."),
     ],
     output: OutputType::Widest,
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "contrast_example",

@@ -6,28 +6,38 @@
 mod arc;
 mod blend;
 mod componentwise;
+mod composite;
 mod noise;
 mod page;
+mod vector;
 
 mod absval;
 mod acos;
 mod add;
 mod asin;
 mod atan;
+mod atan2;
 mod bias;
 mod burn;
 mod ceil;
 mod checkerboard;
 mod clamp;
 mod colorramp;
+mod combine2;
 mod combine3;
+mod combine4;
 mod constant;
 mod contrast;
+mod convert;
 mod cos;
+mod crossproduct;
 mod darken;
 mod difference;
+mod disjointover;
+mod distance;
 mod divide;
 mod dodge;
+mod dotproduct;
 mod exp;
 mod extract;
 mod floor;
@@ -38,12 +48,16 @@ mod hardlight;
 mod ifequal;
 mod ifgreater;
 mod ifgreatereq;
+mod r#in;
 mod invert;
 mod levels;
 mod lighten;
 mod linearlight;
 mod ln;
 mod luminance;
+mod magnitude;
+mod mask;
+mod matte;
 mod max;
 mod min;
 mod minus;
@@ -51,10 +65,14 @@ mod mix;
 mod modulo;
 mod multiply;
 mod noise2d;
+mod normalize;
+mod out;
+mod over;
 mod overlay;
 mod place2d;
 mod plus;
 mod power;
+mod premult;
 mod quantize;
 mod range;
 mod rotate2d;
@@ -76,6 +94,7 @@ mod switch;
 mod tan;
 mod texcoord;
 mod trianglewave;
+mod unpremult;
 
 pub use page::{describe, page};
 
@@ -96,22 +115,28 @@ static CATALOGUE: &[NodeDef] = &[
     stripes::DEF,
     // Arithmetic.
     add::DEF,
+    atan2::DEF,
     burn::DEF,
+    crossproduct::DEF,
     darken::DEF,
     difference::DEF,
+    distance::DEF,
     divide::DEF,
     dodge::DEF,
+    dotproduct::DEF,
     hardlight::DEF,
     ifequal::DEF,
     ifgreater::DEF,
     ifgreatereq::DEF,
     lighten::DEF,
     linearlight::DEF,
+    magnitude::DEF,
     max::DEF,
     min::DEF,
     minus::DEF,
     mix::DEF,
     multiply::DEF,
+    normalize::DEF,
     overlay::DEF,
     plus::DEF,
     screen::DEF,
@@ -152,12 +177,23 @@ static CATALOGUE: &[NodeDef] = &[
     trianglewave::DEF,
     // Color.
     colorramp::DEF,
+    disjointover::DEF,
+    r#in::DEF,
     luminance::DEF,
+    mask::DEF,
+    matte::DEF,
+    out::DEF,
+    over::DEF,
+    premult::DEF,
+    unpremult::DEF,
     // Coordinate.
     place2d::DEF,
     rotate2d::DEF,
     // Channel.
+    combine2::DEF,
     combine3::DEF,
+    combine4::DEF,
+    convert::DEF,
     extract::DEF,
 ];
 

@@ -45,7 +45,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.0, 1.0)),
     ],
     output: OutputType::Widest,
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "minus_example",

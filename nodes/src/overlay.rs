@@ -68,5 +68,5 @@ static SPEC: NodeSpec = NodeSpec {
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    blend(lower, node, |lower, fg, bg| overlaid(lower, fg, bg))
+    blend(lower, node, overlaid)
 }

@@ -31,7 +31,7 @@ static SPEC: NodeSpec = NodeSpec {
             .unit("radians"),
     ],
     output: OutputType::Widest,
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "tan_example",

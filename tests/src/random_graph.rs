@@ -85,10 +85,16 @@ fn inputs(random: &mut Random, spec: &NodeSpec, made: &[Made]) -> (Map<String, V
     let ty = match spec.output {
         OutputType::Exactly(ty) => ty,
         OutputType::Widest | OutputType::Whole => widest,
-        OutputType::Named(port) => inputs[port]
-            .as_str()
-            .and_then(Type::by_name)
-            .expect("a choice names a type"),
+        OutputType::Named(port) => {
+            let default = spec.inputs.iter().find(|input| input.name == port);
+            let default = default.map(|input| match input.default {
+                mipless_graph::Default::Choice(name) => name,
+                other => panic!("{other:?} of {} names no type", spec.name),
+            });
+            let written = inputs.get(port).and_then(Value::as_str);
+            let name = written.or(default).expect("a choice");
+            Type::by_name(name).expect("a type")
+        }
         OutputType::Stops => stops,
     };
     (inputs, ty)

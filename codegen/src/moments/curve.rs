@@ -40,7 +40,7 @@ pub(super) const TEN: [(f32, f32); 10] = [
 ];
 
 /// Equidistant standard scores with Gaussian weights of unit sum and variance.
-fn scores() -> [(f32, f32); 9] {
+pub(super) fn scores() -> [(f32, f32); 9] {
     let scores: [f64; 9] = std::array::from_fn(|i| (i as f64 - 4.0) * 1.1);
     let weights = scores.map(|z| (-0.5 * z * z).exp());
     let total: f64 = weights.iter().sum();

@@ -315,13 +315,8 @@ fn smooth_functions() {
     };
     let unit = |x: f64| x.clamp(0.0, 1.0);
     let levels = |x: f64, gamma: f64| x.signum() * x.abs().powf(1.0 / gamma);
-    type Case<'a> = (
-        &'a str,
-        Value,
-        &'a dyn Fn(f64) -> f64,
-        &'a [Inputs<'a>],
-        [f64; 2],
-    );
+    type Function<'a> = &'a dyn Fn(f64) -> f64;
+    type Case<'a> = (&'a str, Value, Function<'a>, &'a [Inputs<'a>], [f64; 2]);
     let cases: [Case<'_>; 16] = [
         ("exp", json!({}), &f64::exp, &ONE[..5], [2e-4, 1e-3]),
         ("sqrt", json!({}), &|x| x.max(0.0).sqrt(), ONE, [1e-3, 1e-3]),

@@ -1,0 +1,67 @@
+//! Conversion between types.
+
+use mipless_codegen::moments::Signal;
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "convert",
+    aliases: &["cast", "to_vector", "to_color"],
+    category: Category::Channel,
+    summary: "The same numbers as another type.",
+    doc: Doc {
+        computes: "out = the components of in, in order, as the type `to`: a float goes to every \
+            component; what is missing is 0, an alpha that is missing is 1, what is too much is \
+            left out.",
+        statistics: "Exact: each component as it is.",
+        accuracy: "Exact. Held by `nodes/src/tests/vector.rs` against dense numerical integration in \
+            f64.",
+        references: "MaterialX 1.39 specification, node `convert`.",
+    },
+    inputs: &[
+        PortSpec::new(
+            "in",
+            PortType::Any,
+            Default::Float(0.0),
+            "What is converted.",
+        ),
+        PortSpec::new(
+            "to",
+            PortType::Choice(&["color3", "color4", "vector2", "vector3", "vector4"]),
+            Default::Choice("color3"),
+            "The type of the result.",
+        ),
+    ],
+    output: OutputType::Named("to"),
+    class: |_| Behaviour::Linear,
+    example: r#"{
+  "version": 1,
+  "name": "convert_example",
+  "nodes": {
+    "uv": {"type": "texcoord"},
+    "convert": {"type": "convert", "inputs": {"in": {"node": "uv"}, "to": "vector3"}}
+  },
+  "outputs": { "out": { "node": "convert" } }
+}"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let mut bundle = lower.bundle(node, "in");
+    let scalar = bundle.len() == 1;
+    while bundle.len() < node.ty.components() {
+        let alpha = node.ty == Type::Color4 && bundle.len() == 3;
+        let next = if scalar && !alpha {
+            bundle[0].clone()
+        } else {
+            Signal::constant(lower.b(), f32::from(u8::from(alpha)))
+        };
+        bundle.push(next);
+    }
+    bundle.truncate(node.ty.components());
+    bundle
+}
