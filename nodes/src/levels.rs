@@ -112,7 +112,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
 }
 
 /// sign(t) |t|^(1/gamma), of t limited to [0, 1] or not.
-fn curved(lower: &mut Lower<'_>, share: &Signal, gamma: Value, limited: bool) -> Signal {
+pub(crate) fn curved(lower: &mut Lower<'_>, share: &Signal, gamma: Value, limited: bool) -> Signal {
     let b = lower.b();
     let (zero, one) = (b.f32(0.0), b.f32(1.0));
     if b.as_constant(gamma) == Some(1.0) {

@@ -7,6 +7,7 @@ mod arc;
 mod blend;
 mod componentwise;
 mod composite;
+mod hsv;
 mod noise;
 mod page;
 mod vector;
@@ -18,10 +19,13 @@ mod asin;
 mod atan;
 mod atan2;
 mod bias;
+mod blackbody;
+mod brightness;
 mod burn;
 mod ceil;
 mod checkerboard;
 mod clamp;
+mod colorcorrect;
 mod colorramp;
 mod combine2;
 mod combine3;
@@ -45,6 +49,8 @@ mod fract;
 mod fractal2d;
 mod gain;
 mod hardlight;
+mod hsvadjust;
+mod hsvtorgb;
 mod ifequal;
 mod ifgreater;
 mod ifgreatereq;
@@ -75,8 +81,10 @@ mod power;
 mod premult;
 mod quantize;
 mod range;
+mod rgbtohsv;
 mod rotate2d;
 mod round;
+mod saturate;
 mod screen;
 mod sign;
 mod sin;
@@ -176,8 +184,13 @@ static CATALOGUE: &[NodeDef] = &[
     tan::DEF,
     trianglewave::DEF,
     // Color.
+    blackbody::DEF,
+    brightness::DEF,
+    colorcorrect::DEF,
     colorramp::DEF,
     disjointover::DEF,
+    hsvadjust::DEF,
+    hsvtorgb::DEF,
     r#in::DEF,
     luminance::DEF,
     mask::DEF,
@@ -185,6 +198,8 @@ static CATALOGUE: &[NodeDef] = &[
     out::DEF,
     over::DEF,
     premult::DEF,
+    rgbtohsv::DEF,
+    saturate::DEF,
     unpremult::DEF,
     // Coordinate.
     place2d::DEF,

@@ -223,7 +223,8 @@ fn waves_and_steps() {
         }
         json!({ "type": ty, "inputs": inputs })
     };
-    let unary: [(&str, Value, fn(f64) -> f64); 9] = [
+    type Wave = fn(f64) -> f64;
+    let unary: [(&str, Value, Wave); 9] = [
         ("fract", json!({}), |x| x - x.floor()),
         ("trianglewave", json!({}), |x| {
             2.0 * (x - (x + 0.5).floor()).abs()
