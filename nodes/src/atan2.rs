@@ -35,10 +35,9 @@ static SPEC: NodeSpec = NodeSpec {
   "version": 1,
   "name": "atan2_example",
   "nodes": {
-    "uv": {"type": "texcoord"},
-    "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
-    "v": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 1}},
-    "atan2": {"type": "atan2", "inputs": {"iny": {"node": "v"}, "inx": {"node": "u"}}}
+    "up": {"type": "noise2d", "inputs": {"frequency": 5}},
+    "across": {"type": "noise2d", "inputs": {"frequency": 4, "amplitude": 0.5, "pivot": 1, "seed": 3}},
+    "atan2": {"type": "atan2", "inputs": {"iny": {"node": "up"}, "inx": {"node": "across"}}}
   },
   "outputs": { "out": { "node": "atan2" } }
 }"#,

@@ -35,7 +35,7 @@ static SPEC: NodeSpec = NodeSpec {
   "nodes": {
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
-    "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 25}},
+    "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 10}},
     "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
     "contrast": {"type": "contrast", "inputs": {"in": {"node": "wave"}, "amount": 1.6}}
   },

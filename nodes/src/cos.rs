@@ -39,7 +39,7 @@ static SPEC: NodeSpec = NodeSpec {
   "nodes": {
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
-    "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 25}},
+    "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 10}},
     "cos": {"type": "cos", "inputs": {"in": {"node": "turns"}}}
   },
   "outputs": { "out": { "node": "cos" } }

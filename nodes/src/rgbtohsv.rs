@@ -42,9 +42,9 @@ static SPEC: NodeSpec = NodeSpec {
   "version": 1,
   "name": "rgbtohsv_example",
   "nodes": {
-    "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},
-    "other": {"type": "noise2d", "inputs": {"frequency": 4, "pivot": 0.4, "seed": 3}},
-    "color": {"type": "combine3", "inputs": {"in1": {"node": "noise"}, "in2": 0.25, "in3": {"node": "other"}}},
+    "noise": {"type": "noise2d", "inputs": {"frequency": 5, "amplitude": 0.2, "pivot": 0.8}},
+    "other": {"type": "noise2d", "inputs": {"frequency": 4, "amplitude": 0.2, "pivot": 0.45, "seed": 3}},
+    "color": {"type": "combine3", "inputs": {"in1": {"node": "noise"}, "in2": 0.15, "in3": {"node": "other"}}},
     "rgbtohsv": {"type": "rgbtohsv", "inputs": {"in": {"node": "color"}}}
   },
   "outputs": { "out": { "node": "rgbtohsv" } }

@@ -152,11 +152,11 @@ impl Signal {
             .map(|&(_, c)| c)
     }
 
-    /// The third cumulant that g and H carry, limited to |κ₃| ≤ σ³ (`sd` = σ):
-    /// 3 gᵀHg + tr H³.
-    pub fn third_cumulant(&self, b: &mut Builder, sd: Value) -> Value {
-        let [x, y] = self.g;
-        let [h11, h12, h22] = self.h;
+    /// The skewness κ₃/σ³ that g and H carry, limited to ±1 (`inverse_sd` = 1/σ):
+    /// κ₃ = 3 gᵀHg + tr H³. In units of σ, since a footprint's sixth power overflows.
+    pub fn skewness(&self, b: &mut Builder, inverse_sd: Value) -> Value {
+        let [x, y] = self.g.map(|v| b.mul(v, inverse_sd));
+        let [h11, h12, h22] = self.h.map(|v| b.mul(v, inverse_sd));
         let (xx, xy, yy) = (b.square(x), b.mul(x, y), b.square(y));
         let xy2 = b.add(xy, xy);
         let quadratic = b.dot(&[xx, xy2, yy], &[h11, h12, h22]);
@@ -166,15 +166,11 @@ impl Signal {
         let trace = b.add(h11, h22);
         let b2 = b.scale(b2, 3.0);
         let cube = b.dot(&[a2, d2, b2], &[h11, h22, trace]);
-        let kappa = b.add(quadratic, cube);
-        if b.is_zero(kappa) {
-            return kappa;
+        let skewness = b.add(quadratic, cube);
+        if b.is_zero(skewness) {
+            return skewness;
         }
-        let v = b.square(sd);
-        let limit = b.mul(v, sd);
-        let low = b.neg(limit);
-        let kappa = b.max(kappa, low);
-        b.min(kappa, limit)
+        b.clamp(skewness, -1.0, 1.0)
     }
 
     /// Every coefficient through `f`, the mean through `mean`, private variances through `private`.

@@ -98,10 +98,14 @@ impl Algebra {
         let mut out = x.scale(b, m.slope);
         out.range = range;
         out.mean = m.mean;
-        let kappa = x.third_cumulant(b, sd);
-        if !b.is_zero(kappa) {
-            let sixth = b.scale(kappa, 1.0 / 6.0);
-            let correction = b.mul(sixth, m.third);
+        let skewness = x.skewness(b, inverse_sd);
+        if !b.is_zero(skewness) {
+            // (κ₃/6) E[T‴]: σ by σ, since σ³ alone overflows.
+            let mut correction = b.scale(skewness, 1.0 / 6.0);
+            correction = b.mul(correction, m.third);
+            for _ in 0..3 {
+                correction = b.mul(correction, sd);
+            }
             out.mean = b.add(m.mean, correction);
             if range[0].is_finite() && range[1].is_finite() {
                 out.mean = b.clamp(out.mean, range[0], range[1]);
