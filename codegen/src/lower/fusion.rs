@@ -58,6 +58,7 @@ impl<'a> Compiler<'a> {
             functions: Default::default(),
             fused: Default::default(),
             levels: Default::default(),
+            library: self.library.clone(),
         }
     }
 }
