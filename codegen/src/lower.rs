@@ -6,6 +6,7 @@
 
 mod entry;
 mod fusion;
+mod map;
 mod method;
 mod sampling;
 mod symbols;
@@ -15,7 +16,7 @@ pub use method::{Method, ParseMethodError, PixelFilter};
 use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
 };
-use crate::moments::{Algebra, Mode, Samples, Signal, Symbol, scale_function};
+use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, scale_function};
 use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
 };
@@ -95,6 +96,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         literal,
         functions,
         fused,
+        maps: RefCell::default(),
         levels: Cell::new(None),
     };
     let mut module = Module::default();
@@ -154,6 +156,8 @@ struct Compiler<'a> {
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
     fused: RefCell<FxHashMap<usize, Samples>>,
+    /// The functions of two signals, by their keys.
+    maps: RefCell<FxHashMap<String, Map>>,
     /// The table of levels that pyramids share, once there is one.
     levels: Cell<Option<u32>>,
 }
