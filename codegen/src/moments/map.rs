@@ -238,3 +238,6 @@ struct Moments {
     distortion: Value,
 }
 
+
+#[cfg(test)]
+mod tests;

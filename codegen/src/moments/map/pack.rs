@@ -1,7 +1,7 @@
 //! All components of a texel in one number.
 //!
 //! A number of a table is an f32 that must survive every load, so no bits may make it a NaN or a
-//! subnormal: 30 bits are used, the sign stays 0 and the exponent lies between 64 and 127 (in its
+//! subnormal: 30 bits are used, the sign stays 0 and the exponent lies between 64 and 191 (in its
 //! stored form). One component is stored as it is.
 
 use crate::ir::{Builder, Value};
@@ -96,14 +96,15 @@ impl Packing {
             return vec![number];
         }
         let bits = b.bits(number);
+        let base = b.u32(BASE);
+        let word = b.sub_u(bits, base);
         let mut shift = 0;
         (self.bits[..self.components].iter())
             .map(|&width| {
                 let by = b.u32(shift);
-                let moved = b.shr_u(bits, by);
+                let moved = b.shr_u(word, by);
                 let mask = b.u32((1 << width) - 1);
                 shift += width;
-                // The exponent's base lies above the topmost component.
                 let code = b.and_u(moved, mask);
                 b.float_u(code)
             })

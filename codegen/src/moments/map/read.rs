@@ -166,6 +166,7 @@ impl Map {
                     let line = b.dot(&tap.offset, &slopes);
                     let above = b.sub(means[k][i], tapped);
                     let above = b.sub(above, line);
+                    let above = b.mul(above, taps.shrink);
                     let square = b.square(above);
                     sum = b.add(sum, square);
                     let part = b.scale(sum, tap.weight);
