@@ -6,6 +6,7 @@
 
 mod entry;
 mod fusion;
+mod map;
 mod method;
 mod sampling;
 mod symbols;
@@ -16,7 +17,7 @@ use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Library, Module, Port, Program, Type as Scalar,
     Value,
 };
-use crate::moments::{Algebra, Mode, Samples, Signal, Symbol};
+use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol};
 use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
 };
@@ -96,6 +97,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         literal,
         functions,
         fused,
+        maps: RefCell::default(),
         levels: Cell::new(None),
         library: Library::default(),
     };
@@ -157,6 +159,8 @@ struct Compiler<'a> {
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
     fused: RefCell<FxHashMap<usize, Samples>>,
+    /// The functions of two signals, by their keys.
+    maps: RefCell<FxHashMap<String, Map>>,
     /// The table of levels that pyramids share, once there is one.
     levels: Cell<Option<u32>>,
     /// The functions that all functions share.

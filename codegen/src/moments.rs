@@ -18,6 +18,7 @@
 //! - What no result reads does not exist: a moment that is not demanded is dead code.
 
 mod extremum;
+mod map;
 mod normal;
 mod piecewise;
 mod position;
@@ -32,6 +33,8 @@ mod wave;
 
 use crate::ir::{Builder, Value};
 
+pub use map::Domain;
+pub(crate) use map::{Grid, Map, SIDE};
 pub use normal::Normal;
 pub use piecewise::{Knot, Piecewise, Shape};
 pub use signal::{Covariance, Signal, Symbol};
