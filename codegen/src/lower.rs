@@ -338,7 +338,11 @@ impl<'a> Lower<'a> {
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
-                    signal.hermite = Some(self.algebra.fresh_symbol());
+                    if signal.hermite.is_none() {
+                        let symbol = self.algebra.fresh_symbol();
+                        signal.hermite = Some(symbol);
+                        self.carriers.gained(symbol);
+                    }
                 }
             }
             self.bundles[index] = Some(bundle);

@@ -194,8 +194,13 @@ impl PortSpec {
 pub enum OutputType {
     /// This type.
     Exactly(Type),
-    /// The widest of the [`PortType::Any`] inputs.
+    /// The widest of the [`PortType::Any`] inputs; each component comes from the same components of
+    /// the inputs alone.
     Widest,
+    /// The widest of the [`PortType::Any`] inputs, whose components act on one another.
+    Whole,
+    /// The type that the [`PortType::Choice`] input of this name names.
+    Named(&'static str),
     /// The type of the values of the [`PortType::Stops`] input.
     Stops,
 }
