@@ -6,9 +6,11 @@
 mod componentwise;
 mod noise;
 mod page;
+mod pattern;
 
 mod absval;
 mod add;
+mod brick;
 mod checkerboard;
 mod clamp;
 mod colorramp;
@@ -17,6 +19,7 @@ mod constant;
 mod divide;
 mod extract;
 mod fractal2d;
+mod grid;
 mod invert;
 mod luminance;
 mod max;
@@ -51,7 +54,9 @@ static CATALOGUE: &[NodeDef] = &[
     noise2d::DEF,
     spectralnoise2d::DEF,
     // Pattern.
+    brick::DEF,
     checkerboard::DEF,
+    grid::DEF,
     stripes::DEF,
     // Arithmetic.
     add::DEF,

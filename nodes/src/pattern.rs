@@ -1,0 +1,7 @@
+//! Patterns of position, filtered by the footprint.
+
+pub(crate) mod bond;
+pub(crate) mod pulse;
+pub(crate) mod separable;
+#[cfg(test)]
+mod tests;
