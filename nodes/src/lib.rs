@@ -21,23 +21,34 @@ mod extract;
 mod fractal2d;
 mod grid;
 mod invert;
+mod kaleidoscope;
 mod luminance;
 mod max;
 mod min;
+mod mirror;
 mod mix;
 mod multiply;
 mod noise2d;
 mod place2d;
+mod polar;
 mod power;
+mod ramp4;
+mod ramplr;
+mod ramptb;
 mod range;
+mod repeat;
 mod rotate2d;
 mod sin;
 mod smoothstep;
 mod spectralnoise2d;
+mod splitlr;
+mod splittb;
 mod step;
 mod stripes;
 mod subtract;
+mod swirl;
 mod texcoord;
+mod warp;
 
 pub use page::{describe, page};
 
@@ -57,6 +68,11 @@ static CATALOGUE: &[NodeDef] = &[
     brick::DEF,
     checkerboard::DEF,
     grid::DEF,
+    ramp4::DEF,
+    ramplr::DEF,
+    ramptb::DEF,
+    splitlr::DEF,
+    splittb::DEF,
     stripes::DEF,
     // Arithmetic.
     add::DEF,
@@ -79,8 +95,14 @@ static CATALOGUE: &[NodeDef] = &[
     colorramp::DEF,
     luminance::DEF,
     // Coordinate.
+    kaleidoscope::DEF,
+    mirror::DEF,
     place2d::DEF,
+    polar::DEF,
+    repeat::DEF,
     rotate2d::DEF,
+    swirl::DEF,
+    warp::DEF,
     // Channel.
     combine3::DEF,
     extract::DEF,

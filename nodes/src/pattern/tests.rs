@@ -201,3 +201,68 @@ fn every_place_belongs_to_one_brick() {
         assert!(values.iter().all(|&x| x == 1.0), "{bond}");
     }
 }
+
+/// The RMS error of the mean of a noise of standard deviation 1 that is read at coordinates, over
+/// footprints of a size.
+fn read_error(coordinate: &Value, size: f32, turned: bool) -> f64 {
+    let graph = json!({
+        "version": 1, "name": "read",
+        "nodes": {
+            "place": coordinate,
+            "x": { "type": "noise2d", "inputs": { "texcoord": { "node": "place" }, "frequency": 6, "amplitude": 4 } }
+        },
+        "outputs": { "out": { "node": "x" } }
+    })
+    .to_string();
+    let places = 40;
+    let footprints = footprints(size, turned, places);
+    let truth = dense(&graph, &footprints, 2000);
+    let found = &evaluated(&graph, Method::Local, &footprints)[0];
+    let square = |(found, truth): (&f64, &[f64; 2])| (found - truth[0]).powi(2);
+    let sum: f64 = found.iter().zip(&truth).map(square).sum();
+    (sum / places as f64).sqrt()
+}
+
+#[test]
+fn ramps_and_splits_are_filtered_exactly() {
+    let exact = [[1e-3; 2]; 2];
+    for name in ["ramplr", "splitlr"] {
+        held(name, &json!({ "valuel": 0, "valuer": 1 }), 1.0, exact);
+    }
+    for name in ["ramptb", "splittb"] {
+        held(name, &json!({ "valuet": 0, "valueb": 1 }), 1.0, exact);
+    }
+    let corners = json!({ "valuetl": 0, "valuetr": 1, "valuebl": 0.5, "valuebr": 0 });
+    held("ramp4", &corners, 1.0, [[1e-3, 0.02], [0.08, 0.16]]);
+}
+
+#[test]
+fn coordinates_have_the_moments_that_their_pages_state() {
+    held("mirror", &json!({}), 1.0, [[2e-3, 5e-3]; 2]);
+    held("swirl", &json!({}), 0.025, [[0.02; 2], [0.07; 2]]);
+    held("polar", &json!({ "center": [-2, -3] }), 0.3, [[0.02; 2]; 2]);
+}
+
+#[test]
+fn what_reads_odd_coordinates_is_filtered_by_their_footprint() {
+    for (ty, bound) in [
+        ("mirror", 0.1),
+        ("kaleidoscope", 0.15),
+        ("swirl", 0.1),
+        ("repeat", 0.2),
+        ("polar", 0.2),
+    ] {
+        let coordinate = json!({ "type": ty });
+        for (size, turned) in [
+            (0.003, false),
+            (0.01, false),
+            (0.03, false),
+            (0.01, true),
+            (0.03, true),
+        ] {
+            let error = read_error(&coordinate, size, turned);
+            println!("{ty} {size} {turned}: {error:.4}");
+            assert!(error < bound, "{ty} {size} {turned}: {error:.4}");
+        }
+    }
+}
