@@ -8,6 +8,7 @@ mod blend;
 mod componentwise;
 mod noise;
 mod page;
+mod pattern;
 
 mod absval;
 mod acos;
@@ -17,6 +18,7 @@ mod atan;
 mod bias;
 mod burn;
 mod ceil;
+mod brick;
 mod checkerboard;
 mod clamp;
 mod colormap2d;
@@ -48,6 +50,13 @@ mod luminance;
 mod max;
 mod min;
 mod minus;
+mod grid;
+mod invert;
+mod kaleidoscope;
+mod luminance;
+mod max;
+mod min;
+mod mirror;
 mod mix;
 mod modulo;
 mod multiply;
@@ -57,7 +66,13 @@ mod place2d;
 mod plus;
 mod power;
 mod quantize;
+mod polar;
+mod power;
+mod ramp4;
+mod ramplr;
+mod ramptb;
 mod range;
+mod repeat;
 mod rotate2d;
 mod round;
 mod screen;
@@ -77,6 +92,14 @@ mod switch;
 mod tan;
 mod texcoord;
 mod trianglewave;
+mod splitlr;
+mod splittb;
+mod step;
+mod stripes;
+mod subtract;
+mod swirl;
+mod texcoord;
+mod warp;
 
 pub use page::{describe, page};
 
@@ -93,7 +116,14 @@ static CATALOGUE: &[NodeDef] = &[
     noise2d::DEF,
     spectralnoise2d::DEF,
     // Pattern.
+    brick::DEF,
     checkerboard::DEF,
+    grid::DEF,
+    ramp4::DEF,
+    ramplr::DEF,
+    ramptb::DEF,
+    splitlr::DEF,
+    splittb::DEF,
     stripes::DEF,
     // Arithmetic.
     add::DEF,
@@ -156,8 +186,14 @@ static CATALOGUE: &[NodeDef] = &[
     colorramp::DEF,
     luminance::DEF,
     // Coordinate.
+    kaleidoscope::DEF,
+    mirror::DEF,
     place2d::DEF,
+    polar::DEF,
+    repeat::DEF,
     rotate2d::DEF,
+    swirl::DEF,
+    warp::DEF,
     // Channel.
     combine3::DEF,
     extract::DEF,
