@@ -9,9 +9,9 @@ pub(crate) fn run() {
         graph: graph("spectralnoise2d", r#""amplitude":4"#),
         wavelength: 1.0,
         sd: 1.0,
-        // The band ends at √2 cycles a wavelength; squares have twice its frequencies.
-        finest: 0.35,
-        places: 256,
+        // The band ends at √2 cycles a wavelength.
+        finest: 0.7,
+        places: 192,
         extent: 60.0,
         target,
     });

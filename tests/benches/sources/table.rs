@@ -33,7 +33,7 @@ pub(crate) struct Source {
     pub(crate) wavelength: f64,
     /// Its standard deviation over the plane.
     pub(crate) sd: f64,
-    /// The shortest distance over which it changes, in wavelengths.
+    /// The shortest period in it, in wavelengths.
     pub(crate) finest: f64,
     /// At how many places it is measured, over a square of `extent` wavelengths.
     pub(crate) places: usize,

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 pub(crate) type Moments = [f64; 2];
 
 /// How far the grid reaches, in standard deviations.
-const REACH: f64 = 5.0;
+const REACH: f64 = 4.8;
 
 /// A texture compiled for a method in f64, with one output, in units of the pixel filter's standard
 /// deviation.
@@ -37,10 +37,12 @@ pub(crate) fn moments(evaluator: &Evaluator<f64>, footprints: &[Footprint]) -> V
         .collect()
 }
 
-/// Mean and variance over a Gaussian footprint at every place. `finest` is the shortest distance
-/// over which the point function changes: a step of the grid is at most a third of it, or 0.55
-/// standard deviations. For a function without frequencies above 1/finest the rule is exact to
-/// about 1e-5 (its error falls with exp(−2π²σ²/step²)).
+/// Points that are evaluated at once.
+const BATCH: usize = 2048;
+
+/// Mean and variance over a Gaussian footprint at every place. `finest` is the shortest period in
+/// the point function: for steps of 1/step = 2/finest + 0.9/σ the rule is exact to 1e-6 for whatever
+/// has no higher frequencies (its error is exp(−2π²σ²(1/step − 2/finest)²)).
 pub(crate) fn truth(
     point: &Evaluator<f64>,
     places: &[[f64; 2]],
@@ -49,7 +51,7 @@ pub(crate) fn truth(
 ) -> Vec<Moments> {
     let nodes = axes.map(|axis| {
         let length = axis[0].hypot(axis[1]);
-        let step = (finest / 3.0 / length).min(0.55);
+        let step = 1.0 / (2.0 * length / finest + 0.9);
         let half = (REACH / step).ceil() as i32;
         (-half..=half)
             .map(|i| {
@@ -58,20 +60,22 @@ pub(crate) fn truth(
             })
             .collect::<Vec<_>>()
     });
+    let grid: Vec<([f64; 2], f64)> = (nodes[0].iter())
+        .flat_map(|&(z, w)| nodes[1].iter().map(move |&(y, v)| ([z, y], w * v)))
+        .collect();
     let over = |place: &[f64; 2]| {
         let (mut scratch, mut outputs) = (Scratch::new(), Vec::new());
         let (mut total, mut mean, mut square) = (0.0, 0.0, 0.0);
-        for &(z, w) in &nodes[0] {
-            let row: Vec<Footprint> = (nodes[1].iter())
-                .map(|&(y, _)| {
+        for part in grid.chunks(BATCH) {
+            let footprints: Vec<Footprint> = (part.iter())
+                .map(|&([z, y], _)| {
                     let at = [0, 1].map(|k| place[k] + axes[0][k] * z + axes[1][k] * y);
                     footprint(at, [[0.0; 2]; 2])
                 })
                 .collect();
-            point.evaluate_footprints(&mut scratch, &row, &[], &mut outputs);
+            point.evaluate_footprints(&mut scratch, &footprints, &[], &mut outputs);
             // Weighted sums of deviations by West 1979: no difference of second moments.
-            for (&x, &(_, v)) in outputs[0].iter().zip(&nodes[1]) {
-                let weight = w * v;
+            for (&x, &(_, weight)) in outputs[0].iter().zip(part) {
                 total += weight;
                 let deviation = x - mean;
                 mean += deviation * weight / total;
