@@ -17,6 +17,7 @@ mod constant;
 mod divide;
 mod extract;
 mod fractal2d;
+mod gabornoise2d;
 mod invert;
 mod luminance;
 mod max;
@@ -48,6 +49,7 @@ static CATALOGUE: &[NodeDef] = &[
     texcoord::DEF,
     // Noise.
     fractal2d::DEF,
+    gabornoise2d::DEF,
     noise2d::DEF,
     spectralnoise2d::DEF,
     // Pattern.

@@ -11,6 +11,8 @@
 
 #[path = "sources/footprint.rs"]
 mod footprint;
+#[path = "sources/gabor.rs"]
+mod gabor;
 #[path = "sources/spectral.rs"]
 mod spectral;
 #[path = "sources/table.rs"]
@@ -19,7 +21,7 @@ mod table;
 mod truth;
 
 /// The families, by the names that the command line takes.
-const FAMILIES: [(&str, fn()); 1] = [("spectral", spectral::run)];
+const FAMILIES: [(&str, fn()); 2] = [("spectral", spectral::run), ("gabor", gabor::run)];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

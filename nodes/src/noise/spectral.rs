@@ -8,6 +8,7 @@ mod waves;
 
 pub(crate) use waves::{Density, FARTHEST, Spectrum};
 
+use super::bend::localized;
 use super::field::{Field, Spread};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -83,6 +84,8 @@ fn build(module: &mut Module, mode: Mode, waves: &[Wave]) -> FunctionRef {
     ];
     let zero = b.f32(0.0);
     let mut sums = [zero; 7];
+    // E[M²] and E[∇M ∇Mᵀ].
+    let (mut left, mut slopes) = (zero, [zero; 3]);
     for wave in waves {
         let amplitude = wave.amplitude;
         let [nx, ny] = wave.vector;
@@ -112,8 +115,20 @@ fn build(module: &mut Module, mode: Mode, waves: &[Wave]) -> FunctionRef {
             cosine = b.mul(cosine, damping);
             sine = b.mul(sine, damping);
             let rest = remainder(&mut b, mode, q, damping);
-            let rest = b.scale(rest, 0.5 * amplitude * amplitude);
+            let power = 0.5 * amplitude * amplitude;
+            let rest = b.scale(rest, power);
             sums[6] = b.add(sums[6], rest);
+            if mode == Mode::Local {
+                let energy = b.square(damping);
+                let energy = b.scale(energy, power);
+                left = b.add(left, energy);
+                for (sum, factor) in
+                    (slopes.iter_mut()).zip([w[0] * w[0], w[0] * w[1], w[1] * w[1]])
+                {
+                    let slope = b.scale(energy, factor);
+                    *sum = b.add(*sum, slope);
+                }
+            }
         }
         let parts = [
             (cosine, 1.0),
@@ -127,6 +142,9 @@ fn build(module: &mut Module, mode: Mode, waves: &[Wave]) -> FunctionRef {
             let part = b.scale(wave, factor * amplitude);
             *sum = b.add(*sum, part);
         }
+    }
+    if mode == Mode::Local {
+        sums[6] = localized(&mut b, sums[6], sums[0], left, slopes, covariance);
     }
     for (name, sum) in PARTS.into_iter().zip(sums) {
         b.result(name, sum);

@@ -4,17 +4,43 @@ use crate::footprint::Shape;
 use crate::table::{Source, Target, graph, print};
 
 pub(crate) fn run() {
-    print(&Source {
-        name: "spectralnoise2d, one octave",
-        graph: graph("spectralnoise2d", r#""amplitude":4"#),
+    let source = |name, inputs, finest, target| Source {
+        name,
+        graph: graph("spectralnoise2d", inputs),
         wavelength: 1.0,
         sd: 1.0,
-        // The band ends at √2 cycles a wavelength.
-        finest: 0.7,
+        finest,
         places: 192,
         extent: 60.0,
         target,
-    });
+    };
+    // The band ends at √2 cycles a wavelength.
+    print(&source(
+        "spectralnoise2d, one octave",
+        r#""amplitude":4"#,
+        0.7,
+        target,
+    ));
+    print(&source(
+        "spectralnoise2d, four octaves by a power law",
+        r#""amplitude":4,"spectrum":"power","bandwidth":4"#,
+        0.25,
+        means,
+    ));
+    print(&source(
+        "spectralnoise2d, a list of three lines",
+        r#""amplitude":4,"spectrum":"list","lines":[{"at":0.5,"value":1},{"at":1,"value":0.7},{"at":2,"value":0.5}]"#,
+        0.5,
+        means,
+    ));
+}
+
+/// Any spectrum: the mean is exact.
+fn means(_: f64, _: Shape) -> Target {
+    Target {
+        mean: Some(0.001),
+        ..Target::default()
+    }
 }
 
 /// One octave: the mean is exact; the standard deviation at .02, .05 and .1 wavelengths.
