@@ -24,10 +24,11 @@ static SPEC: NodeSpec = NodeSpec {
             of equal waves with the same fourth cumulant, max |CDF − Φ| is 0.044/n: 0.0014 for a \
             band of 32 waves. The range is amplitude/4 · √(2n) at most for equal waves. With \
             w = 2πf and q = wᵀΣw each wave is damped by e^{−q/2}; gradient and Hessian are its \
-            derivatives, and the remainder is Σ a²/2 (1 − e^{−q} Σ_k qᵏ/k!). No three waves nearly \
+            derivatives, and the remainder is Σ a²/2 (1 − e^{−q} Σ_k qᵏ/k!); by `local`, the part of it that the value foretells of \
+            the Hessian, ½‖E[ggᵀ]‖² M²/F² with F = E[M²], takes its local value. No three waves nearly \
             close a triangle, which would lock their phases.",
         accuracy: "Mean, gradient, Hessian and ensemble variance are exact, to f32 rounding. The local \
-            standard deviation of one octave is within 0.01, 0.03 and 0.09 (`local`), 0.001, 0.003 \
+            standard deviation of one octave is within 0.005, 0.02 and 0.06 (`local`), 0.001, 0.003 \
             and 0.02 (`quad`) of the true one, in the mean, at footprints of 0.02, 0.05 and 0.1 \
             wavelengths. Held by `nodes/tests/noise.rs`; all sizes in `tests/benches/sources.rs`.",
         references: "Bruneton & Neyret 2012 §2.2; Hermite–Parseval identity.",

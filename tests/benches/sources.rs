@@ -9,6 +9,8 @@
 //! A family is one file in `sources/`: it fills a [`table::Source`] for each of its nodes and adds
 //! itself to [`FAMILIES`].
 
+#[path = "sources/cost.rs"]
+mod cost;
 #[path = "sources/footprint.rs"]
 mod footprint;
 #[path = "sources/gabor.rs"]

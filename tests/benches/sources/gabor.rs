@@ -1,7 +1,9 @@
 //! Sparse convolution with Gabor kernels.
 
+use crate::cost::{Job, nanoseconds};
 use crate::footprint::Shape;
 use crate::table::{Source, Target, graph, print};
+use mipless::Method;
 
 pub(crate) fn run() {
     let source = |name, inputs, finest, target| Source {
@@ -14,6 +16,7 @@ pub(crate) fn run() {
         extent: 60.0,
         target,
     };
+    cost();
     // Above 1 + 3/2πa cycles a wavelength there is a thousandth of the amplitude.
     print(&source(
         "gabornoise2d, one octave, all directions",
@@ -33,6 +36,39 @@ pub(crate) fn run() {
         0.6,
         means,
     ));
+}
+
+/// Sixteen impulses by `local` against noise2d by `point`: the target is 12.
+const COST: f64 = 12.0;
+
+fn cost() {
+    let (gabor, noise) = (graph("gabornoise2d", ""), graph("noise2d", ""));
+    let sizes = [0.01, 0.05, 0.1, 0.2, 0.35, 0.5, 1.0];
+    let job = |graph, method, size| Job {
+        graph,
+        method,
+        size,
+    };
+    let mut jobs = vec![
+        job(&noise, Method::Point, 0.01),
+        job(&gabor, Method::Point, 0.01),
+    ];
+    jobs.extend(sizes.map(|size| job(&gabor, Method::Local, size)));
+    let times = nanoseconds(&jobs);
+    println!(
+        "gabornoise2d, 16 impulses, against noise2d by `point` ({:.0} ns):",
+        times[0]
+    );
+    println!(
+        "`point` {:.1}×; `local` (at most {COST}×) at s:",
+        times[1] / times[0]
+    );
+    for (size, time) in sizes.iter().zip(&times[2..]) {
+        let ratio = time / times[0];
+        let mark = if ratio > COST { "**" } else { "" };
+        println!("{size} {mark}{ratio:.1}×{mark}");
+    }
+    println!();
 }
 
 /// One octave: the mean up to what the windows drop; the standard deviation at .05 and .1 wavelengths.
