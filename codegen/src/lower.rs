@@ -142,6 +142,14 @@ impl InputView for Varying {
     fn choice(&self, _: &str) -> &str {
         ""
     }
+
+    fn number(&self, _: &str) -> f32 {
+        1.0
+    }
+
+    fn stops(&self, _: &str) -> Vec<[f32; 2]> {
+        vec![[1.0, 1.0]]
+    }
 }
 
 /// What all functions of a compilation share.

@@ -41,6 +41,7 @@ mod hardlight;
 mod ifequal;
 mod ifgreater;
 mod ifgreatereq;
+mod gabornoise2d;
 mod invert;
 mod levels;
 mod lighten;
@@ -113,6 +114,7 @@ static CATALOGUE: &[NodeDef] = &[
     texcoord::DEF,
     // Noise.
     fractal2d::DEF,
+    gabornoise2d::DEF,
     noise2d::DEF,
     spectralnoise2d::DEF,
     // Pattern.
