@@ -20,6 +20,7 @@
 mod cubature;
 mod curve;
 mod extremum;
+mod map;
 mod normal;
 mod piecewise;
 mod position;
@@ -36,13 +37,14 @@ mod wave;
 use crate::ir::{Builder, Value};
 
 pub use curve::Curve;
+pub use map::Domain;
+pub(crate) use map::{Grid, Map, SIDE};
 pub use normal::Normal;
 pub use piecewise::{Bump, Knot, Piecewise, Shape};
-pub(crate) use position::scale_function;
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Exponential, Polynomial, RealPower, Reciprocal, Sine};
 pub(crate) use tabulated::{Sampled, Samples, Tabulated, sample_points};
-pub use transfer::{Gaussian, Moments, Transfer};
+pub use transfer::{Gaussian, Moments, SharedTransfer, Transfer};
 pub use wave::{Corner, LinearWave, SquareWave};
 
 /// Which moments signals carry.
@@ -152,14 +154,12 @@ impl Algebra {
     pub fn repeats(&mut self, period: Option<f32>) {
         self.period = period;
     }
+}
 
-    /// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be
-    /// seen.
-    pub fn spread(&mut self, variance: Value) -> (Value, Value) {
-        let b = &mut self.b;
-        let raised = b.offset(variance, 1e-12);
-        let sd = b.sqrt(raised);
-        let one = b.f32(1.0);
-        (sd, b.div(one, sd))
-    }
+/// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be seen.
+pub(crate) fn spread(b: &mut Builder, variance: Value) -> (Value, Value) {
+    let raised = b.offset(variance, 1e-12);
+    let sd = b.sqrt(raised);
+    let one = b.f32(1.0);
+    (sd, b.div(one, sd))
 }

@@ -250,6 +250,10 @@ pub trait InputView {
     fn flag(&self, port: &str) -> bool;
     /// The chosen name of a uniform port.
     fn choice(&self, port: &str) -> &str;
+    /// The number of a uniform port.
+    fn number(&self, port: &str) -> f32;
+    /// The stops of a uniform port, as places and the means of their values' components.
+    fn stops(&self, port: &str) -> Vec<[f32; 2]>;
 }
 
 /// The node's class rule.

@@ -10,6 +10,7 @@ mod composite;
 mod hsv;
 mod noise;
 mod page;
+mod pattern;
 mod vector;
 
 mod absval;
@@ -20,12 +21,14 @@ mod atan;
 mod atan2;
 mod bias;
 mod blackbody;
+mod brick;
 mod brightness;
 mod burn;
 mod ceil;
 mod checkerboard;
 mod clamp;
 mod colorcorrect;
+mod colormap2d;
 mod colorramp;
 mod combine2;
 mod combine3;
@@ -47,7 +50,9 @@ mod extract;
 mod floor;
 mod fract;
 mod fractal2d;
+mod gabornoise2d;
 mod gain;
+mod grid;
 mod hardlight;
 mod hsvadjust;
 mod hsvtorgb;
@@ -56,6 +61,7 @@ mod ifgreater;
 mod ifgreatereq;
 mod r#in;
 mod invert;
+mod kaleidoscope;
 mod levels;
 mod lighten;
 mod linearlight;
@@ -67,6 +73,7 @@ mod matte;
 mod max;
 mod min;
 mod minus;
+mod mirror;
 mod mix;
 mod modulo;
 mod multiply;
@@ -77,10 +84,15 @@ mod over;
 mod overlay;
 mod place2d;
 mod plus;
+mod polar;
 mod power;
 mod premult;
 mod quantize;
+mod ramp4;
+mod ramplr;
+mod ramptb;
 mod range;
+mod repeat;
 mod rgbtohsv;
 mod rotate2d;
 mod round;
@@ -93,16 +105,20 @@ mod smoothmin;
 mod smoothstep;
 mod softlight;
 mod spectralnoise2d;
+mod splitlr;
+mod splittb;
 mod sqrt;
 mod squarewave;
 mod step;
 mod stripes;
 mod subtract;
+mod swirl;
 mod switch;
 mod tan;
 mod texcoord;
 mod trianglewave;
 mod unpremult;
+mod warp;
 
 pub use page::{describe, page};
 
@@ -116,10 +132,18 @@ static CATALOGUE: &[NodeDef] = &[
     texcoord::DEF,
     // Noise.
     fractal2d::DEF,
+    gabornoise2d::DEF,
     noise2d::DEF,
     spectralnoise2d::DEF,
     // Pattern.
+    brick::DEF,
     checkerboard::DEF,
+    grid::DEF,
+    ramp4::DEF,
+    ramplr::DEF,
+    ramptb::DEF,
+    splitlr::DEF,
+    splittb::DEF,
     stripes::DEF,
     // Arithmetic.
     add::DEF,
@@ -187,6 +211,7 @@ static CATALOGUE: &[NodeDef] = &[
     blackbody::DEF,
     brightness::DEF,
     colorcorrect::DEF,
+    colormap2d::DEF,
     colorramp::DEF,
     disjointover::DEF,
     hsvadjust::DEF,
@@ -202,8 +227,14 @@ static CATALOGUE: &[NodeDef] = &[
     saturate::DEF,
     unpremult::DEF,
     // Coordinate.
+    kaleidoscope::DEF,
+    mirror::DEF,
     place2d::DEF,
+    polar::DEF,
+    repeat::DEF,
     rotate2d::DEF,
+    swirl::DEF,
+    warp::DEF,
     // Channel.
     combine2::DEF,
     combine3::DEF,

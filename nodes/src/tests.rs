@@ -513,7 +513,7 @@ fn coordinates_keep_their_detail_far_from_the_origin() {
 }
 
 #[test]
-fn a_checkerboard_is_color1_where_the_cells_are_even() {
+fn a_checkerboard_is_color2_where_the_cells_are_even() {
     let graph = json!({
         "version": 1, "name": "board",
         "nodes": { "b": { "type": "checkerboard", "inputs": { "uvtiling": [4, 2], "uvoffset": [1, 0] } } },
@@ -534,7 +534,7 @@ fn a_checkerboard_is_color1_where_the_cells_are_even() {
         near(
             "square",
             *value,
-            f64::from(u8::from(cells.rem_euclid(2) == 0)),
+            f64::from(u8::from(cells.rem_euclid(2) == 1)),
             1e-6,
         );
     }

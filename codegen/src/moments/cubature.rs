@@ -180,7 +180,7 @@ impl Algebra {
             }
             let zero = self.b.f32(0.0);
             let left = self.b.max(left, zero);
-            let (sd, inverse) = self.spread(left);
+            let (sd, inverse) = super::spread(&mut self.b, left);
             row.push(sd);
             rows.push(row);
             inverses.push(inverse);

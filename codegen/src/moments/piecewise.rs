@@ -9,9 +9,10 @@ mod cubic;
 mod distortion;
 mod segment;
 
-use super::{Gaussian, Moments, Normal, Transfer, signal::UNBOUNDED};
+use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer, signal::UNBOUNDED};
 use crate::ir::{Builder, Value};
 use segment::Segment;
+use smallvec::smallvec;
 
 pub(super) use distortion::Residual;
 pub use segment::Bump;
@@ -360,6 +361,42 @@ impl Transfer for Piecewise {
         }
         out.distortion = t.distortion(b, x, out.mean, out.slope);
         out
+    }
+
+    fn shared(&self, b: &mut Builder, range: [f32; 2]) -> Option<SharedTransfer> {
+        let t = self.within(b, range);
+        let mut values = smallvec![t.offset, t.slope];
+        for knot in &t.knots {
+            values.extend([knot.at, knot.jump, knot.bend]);
+        }
+        values.extend(t.bumps.iter().flat_map(|bump| [bump.start, bump.end]));
+        Some(SharedTransfer {
+            name: "piecewise",
+            doc: "A piecewise function of a signal.",
+            variant: t.knots.len() as u32,
+            values,
+            rebuild: |knots, values| {
+                let (line, rest) = values.split_at(2);
+                let (knots, bumps) = rest.split_at(3 * knots as usize);
+                Box::new(Self {
+                    offset: line[0],
+                    slope: line[1],
+                    knots: (knots.chunks_exact(3))
+                        .map(|k| Knot {
+                            at: k[0],
+                            jump: k[1],
+                            bend: k[2],
+                        })
+                        .collect(),
+                    bumps: (bumps.chunks_exact(2))
+                        .map(|p| Bump {
+                            start: p[0],
+                            end: p[1],
+                        })
+                        .collect(),
+                })
+            },
+        })
     }
 
     fn binary(&self, b: &Builder) -> Option<[f32; 2]> {

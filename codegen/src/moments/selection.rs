@@ -15,7 +15,7 @@
 //! and covariances for jointly Gaussian signals.
 
 use super::piecewise::{Residual, probability};
-use super::{Algebra, Normal, Signal};
+use super::{Algebra, Normal, Signal, spread};
 use crate::ir::{Builder, Value};
 
 /// The probability of an interval, and ∫ zφ and ∫ z²φ over it.
@@ -68,9 +68,9 @@ impl Algebra {
         self.period = None;
         let s = &self.expose(s);
         let branches: Vec<Signal> = branches.iter().map(|w| self.expose(w)).collect();
-        let variance = s.variance(&mut self.b);
-        let (_, inverse) = self.spread(variance);
         let b = &mut self.b;
+        let variance = s.variance(b);
+        let (_, inverse) = spread(b, variance);
         let intervals = intervals(b, s.mean, inverse, thresholds);
         // c_k, μ, and the slope by z, of which Σ c_k ∫ z²φ − P_k c_k is the part beyond the branches'.
         let scores: Vec<Value> = (branches.iter())
