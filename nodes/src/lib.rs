@@ -35,6 +35,7 @@ mod step;
 mod stripes;
 mod subtract;
 mod texcoord;
+mod valuenoise2d;
 
 pub use page::{describe, page};
 
@@ -50,6 +51,7 @@ static CATALOGUE: &[NodeDef] = &[
     fractal2d::DEF,
     noise2d::DEF,
     spectralnoise2d::DEF,
+    valuenoise2d::DEF,
     // Pattern.
     checkerboard::DEF,
     stripes::DEF,

@@ -2,6 +2,10 @@
 
 pub(crate) mod field;
 pub(crate) mod hash;
+pub(crate) mod kernel;
 pub(crate) mod lattice;
+pub(crate) mod octaves;
+pub(crate) mod perlin;
+mod remainder;
 pub(crate) mod source;
 pub(crate) mod spectral;

@@ -84,7 +84,11 @@ fn entry_over(
     let function = function(module);
     let mut b = Builder::new(name, "The texture over a footprint.");
     let arguments = Arguments::declare(&mut b, compiler.graph);
-    let arguments = finite(&mut b, &arguments);
+    let mut arguments = finite(&mut b, &arguments);
+    if compiler.options.method == Method::Point {
+        // A point has no footprint, and needs none that is finite.
+        arguments[4..8].fill(b.f32(0.0));
+    }
     let results = b.call(&function, &arguments);
     finish(module, b, &function, &results);
 }

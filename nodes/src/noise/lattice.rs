@@ -35,6 +35,8 @@ const MOST: f32 = 24.0;
 pub(crate) struct Octaves {
     /// How many, at least 1.
     pub(crate) count: u32,
+    /// By how much of its amplitude one more is there, below 1.
+    pub(crate) part: f32,
     /// By how much the frequency grows.
     pub(crate) lacunarity: f32,
     /// By how much the amplitude falls.
@@ -46,15 +48,71 @@ pub(crate) struct Octaves {
 impl Octaves {
     /// The standard deviation of the sum.
     pub(crate) fn sd(self) -> f32 {
-        (0..self.count as i32)
+        let whole: f32 = (0..self.count as i32)
             .map(|k| self.diminish.powi(2 * k))
-            .sum::<f32>()
-            .sqrt()
+            .sum();
+        let part = self.part * self.diminish.powi(self.count as i32);
+        (whole + part * part).sqrt()
+    }
+
+    /// The sum over octaves of a noise of variance 1; `octave` is the body of the fold over them.
+    pub(super) fn sum(
+        self,
+        lower: &mut Lower<'_>,
+        octave: &FunctionRef,
+        position: &[Signal],
+        spread: &Spread,
+    ) -> Field {
+        let mode = lower.mode();
+        let b = lower.b();
+        let mut init = vec![b.f32(0.0); orders(mode) + usize::from(mode.spreads())];
+        for axis in position {
+            // The lattice needs a cell and a fraction, whatever the position carries.
+            let (cell, fraction) = match axis.cell {
+                Some(cell) => (cell, axis.mean),
+                None => {
+                    let whole = b.floor(axis.mean);
+                    let fraction = b.sub(axis.mean, whole);
+                    (b.trunc_i(whole), fraction)
+                }
+            };
+            init.push(cell);
+            init.push(fraction);
+        }
+        let seed = b.u32(self.seed as u32);
+        let seed = b.scramble(seed);
+        init.extend([b.f32(1.0), b.f32(1.0), seed]);
+        let mut captures = Vec::new();
+        if mode != Mode::Point {
+            captures.extend(spread.covariance);
+            captures.extend(spread.eigenvalues);
+        }
+        let count = b.u32(self.count);
+        let mut sums = b.fold(octave, count, &init, &captures);
+        if self.part > 0.0 {
+            // The state is that of the next octave; its amplitude comes before the seed.
+            let amplitude = sums.len() - 2;
+            sums[amplitude] = b.scale(sums[amplitude], self.part);
+            let once = b.u32(1);
+            sums = b.fold(octave, once, &sums, &captures);
+        }
+        let zero = b.f32(0.0);
+        let at = |i: usize| if i < orders(mode) { sums[i] } else { zero };
+        Field {
+            mean: at(0),
+            gradient: [at(1), at(2)],
+            hessian: [at(3), at(4), at(5)],
+            rest: if mode.spreads() {
+                sums[orders(mode)]
+            } else {
+                zero
+            },
+        }
     }
 }
 
 /// Which derivatives a mode needs.
-fn orders(mode: Mode) -> usize {
+pub(super) fn orders(mode: Mode) -> usize {
     match mode {
         Mode::Point | Mode::Naive | Mode::Ensemble => 1,
         Mode::Local => 3,
@@ -80,57 +138,21 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
         Mode::Point => lower.function(&key, |module| point_octave(module, octaves)),
         _ => lower.function(&key, |module| filtered_octave(module, mode, octaves)),
     };
-    let b = lower.b();
-    let mut init = vec![b.f32(0.0); orders(mode) + usize::from(mode.spreads())];
-    for axis in position {
-        // The lattice needs a cell and a fraction, whatever the position carries.
-        let (cell, fraction) = match axis.cell {
-            Some(cell) => (cell, axis.mean),
-            None => {
-                let whole = b.floor(axis.mean);
-                let fraction = b.sub(axis.mean, whole);
-                (b.trunc_i(whole), fraction)
-            }
-        };
-        init.push(cell);
-        init.push(fraction);
-    }
-    let seed = b.u32(octaves.seed as u32);
-    let seed = b.scramble(seed);
-    init.extend([b.f32(1.0), b.f32(1.0), seed]);
-    let mut captures = Vec::new();
-    if mode != Mode::Point {
-        captures.extend(spread.covariance);
-        captures.extend(spread.eigenvalues);
-    }
-    let count = b.u32(octaves.count);
-    let sums = b.fold(&octave, count, &init, &captures);
-    let zero = b.f32(0.0);
-    let at = |i: usize| if i < orders(mode) { sums[i] } else { zero };
-    Field {
-        mean: at(0),
-        gradient: [at(1), at(2)],
-        hessian: [at(3), at(4), at(5)],
-        rest: if mode.spreads() {
-            sums[orders(mode)]
-        } else {
-            zero
-        },
-    }
+    octaves.sum(lower, &octave, position, &spread)
 }
 
 /// The part of an octave's state that goes from octave to octave: position, frequency, amplitude
 /// and seed.
-struct Octave {
-    cells: [Value; 2],
-    fractions: [Value; 2],
-    scale: Value,
-    amplitude: Value,
-    seed: Value,
+pub(super) struct Octave {
+    pub(super) cells: [Value; 2],
+    pub(super) fractions: [Value; 2],
+    pub(super) scale: Value,
+    pub(super) amplitude: Value,
+    pub(super) seed: Value,
 }
 
 impl Octave {
-    fn declare(b: &mut Builder) -> Self {
+    pub(super) fn declare(b: &mut Builder) -> Self {
         let cell_x = b.param("cell_x", Type::I32);
         let x = b.param_f32("x");
         let cell_y = b.param("cell_y", Type::I32);
@@ -145,17 +167,18 @@ impl Octave {
     }
 
     /// The state of the next octave, as results.
-    fn advance(&self, b: &mut Builder, octaves: Octaves) {
+    pub(super) fn advance(&self, b: &mut Builder, octaves: Octaves) {
         let lacunarity = b.f32(octaves.lacunarity);
         // Octaves must not share lattice points, where the variance of all is largest.
-        let shift = b.f32(0.381_966);
+        let shift = 0.381_966 / octaves.lacunarity;
         for (i, name) in ["x", "y"].iter().enumerate() {
-            let start = Signal::certain(b, self.fractions[i]);
+            let shifted = b.offset(self.fractions[i], shift);
+            let start = Signal::certain(b, shifted);
             let start = Signal {
                 cell: Some(self.cells[i]),
                 ..start
             };
-            let next = start.scale(b, lacunarity).offset(b, shift);
+            let next = start.scale(b, lacunarity);
             b.result(
                 format!("cell_{name}"),
                 next.cell.expect("a position keeps its cell"),
@@ -173,7 +196,7 @@ impl Octave {
 }
 
 /// The lattice coordinate that a window of `count` (a float) points around `x` starts at.
-fn window(b: &mut Builder, x: Value, count: Value) -> Value {
+pub(super) fn window(b: &mut Builder, x: Value, count: Value) -> Value {
     let half = b.scale(count, -0.5);
     let start = b.add(x, half);
     let start = b.floor(start);
@@ -181,7 +204,7 @@ fn window(b: &mut Builder, x: Value, count: Value) -> Value {
 }
 
 /// The hash of a lattice row.
-fn row_hash(b: &mut Builder, cell: Value, row: Value, seed: Value) -> Value {
+pub(super) fn row_hash(b: &mut Builder, cell: Value, row: Value, seed: Value) -> Value {
     let row = b.trunc_i(row);
     let row = b.add_i(cell, row);
     let row = b.cast_u(row);

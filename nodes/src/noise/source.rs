@@ -55,9 +55,10 @@ pub(crate) const SEED: PortSpec = PortSpec::new(
 /// Of what shape.
 pub(crate) const KERNEL: PortSpec = PortSpec::new(
     "kernel",
-    PortType::Choice(&["gaussian"]),
+    PortType::Choice(&["gaussian", "quintic"]),
     Default::Choice("gaussian"),
-    "The kernel at each lattice point; `gaussian` is filtered exactly for any footprint.",
+    "The kernel at each lattice point: `gaussian` is filtered exactly for any footprint, `quintic` \
+     is Perlin's gradient noise.",
 );
 
 /// texcoord · frequency.
@@ -79,13 +80,23 @@ pub(crate) fn shaped(
     sd: f32,
     position: &[Signal],
 ) -> Vec<Signal> {
+    scaled(lower, node, field, (0.25, EXTENT * sd), position)
+}
+
+/// The field as a signal: pivot + amplitude · `factor` · X, with |X| at most `extent`.
+pub(crate) fn scaled(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    field: &Field,
+    (factor, extent): (f32, f32),
+    position: &[Signal],
+) -> Vec<Signal> {
     let amplitude = lower.signal(node, "amplitude");
     let pivot = lower.signal(node, "pivot");
-    let extent = EXTENT * sd;
     let unit = field.at(lower, position).with_range([-extent, extent]);
     let b = lower.b();
-    let quarter = b.f32(0.25);
-    let amplitude = amplitude.scale(b, quarter);
+    let factor = b.f32(factor);
+    let amplitude = amplitude.scale(b, factor);
     let scaled = lower.algebra.product(&unit, &amplitude);
     vec![scaled.add(lower.b(), &pivot)]
 }
