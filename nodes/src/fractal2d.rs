@@ -1,6 +1,6 @@
 //! `fractal2d`: a sum of octaves of lattice noise.
 
-use crate::noise::kernel;
+use crate::noise::kernel::Kernel;
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
 use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped};
 use crate::noise2d::class;
@@ -38,7 +38,9 @@ pub(crate) const DEF: NodeDef = NodeDef {
     lower: |lower, node| {
         let octaves = octaves(lower, node);
         let position = position(lower, node);
-        let field = kernel::filtered(lower, node, &position, octaves);
+        let kernel = Kernel::of(lower, node);
+        kernel.report(lower, &position);
+        let field = kernel.filtered(lower, &position, octaves);
         shaped(lower, node, &field, octaves.sd(), &position)
     },
 };

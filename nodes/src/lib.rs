@@ -22,11 +22,13 @@ mod luminance;
 mod max;
 mod min;
 mod mix;
+mod multifractal2d;
 mod multiply;
 mod noise2d;
 mod place2d;
 mod power;
 mod range;
+mod ridged2d;
 mod rotate2d;
 mod sin;
 mod smoothstep;
@@ -35,6 +37,7 @@ mod step;
 mod stripes;
 mod subtract;
 mod texcoord;
+mod turbulence2d;
 mod valuenoise2d;
 
 pub use page::{describe, page};
@@ -49,8 +52,11 @@ static CATALOGUE: &[NodeDef] = &[
     texcoord::DEF,
     // Noise.
     fractal2d::DEF,
+    multifractal2d::DEF,
     noise2d::DEF,
+    ridged2d::DEF,
     spectralnoise2d::DEF,
+    turbulence2d::DEF,
     valuenoise2d::DEF,
     // Pattern.
     checkerboard::DEF,

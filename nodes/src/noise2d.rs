@@ -1,6 +1,6 @@
 //! `noise2d`: lattice noise, filtered exactly for any footprint.
 
-use crate::noise::kernel;
+use crate::noise::kernel::Kernel;
 use crate::noise::lattice::Octaves;
 use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped};
 use mipless_codegen::NodeDef;
@@ -72,7 +72,9 @@ pub(crate) const DEF: NodeDef = NodeDef {
             seed: lower.integer(node, "seed"),
         };
         let position = position(lower, node);
-        let field = kernel::filtered(lower, node, &position, octaves);
+        let kernel = Kernel::of(lower, node);
+        kernel.report(lower, &position);
+        let field = kernel.filtered(lower, &position, octaves);
         shaped(lower, node, &field, 1.0, &position)
     },
 };

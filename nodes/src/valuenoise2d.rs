@@ -1,7 +1,9 @@
 //! `valuenoise2d`: random values at lattice points, blended between them.
 
+use crate::noise::kernel::Kernel;
 use crate::noise::lattice::Octaves;
-use crate::noise::perlin::{self, Kind};
+use crate::noise::perlin::Kind;
+
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position, scaled};
 use mipless_codegen::NodeDef;
 use mipless_graph::{
@@ -82,7 +84,9 @@ pub(crate) const DEF: NodeDef = NodeDef {
             seed: lower.integer(node, "seed"),
         };
         let position = position(lower, node);
-        let field = perlin::filtered(lower, &position, Kind::Value, octaves);
+        let kernel = Kernel::Quintic(Kind::Value);
+        kernel.report(lower, &position);
+        let field = kernel.filtered(lower, &position, octaves);
         scaled(lower, node, &field, (SD, 0.5 / SD), &position)
     },
 };

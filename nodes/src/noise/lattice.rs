@@ -19,7 +19,7 @@ const WIDTH: f32 = 0.3854;
 
 /// The wavelength of the dominant detail, in cells: the spectrum k⁵ e^{−a²k²} has its peak at
 /// k = √2.5/a.
-const WAVELENGTH: f32 = std::f32::consts::TAU * WIDTH / 1.581_138_8;
+pub(super) const WAVELENGTH: f32 = std::f32::consts::TAU * WIDTH / 1.581_138_8;
 
 /// Below this share of its amplitude an octave has faded, above the other it has not begun to.
 const FADE: [f32; 2] = [0.0286, 0.061];
@@ -125,11 +125,6 @@ pub(super) fn orders(mode: Mode) -> usize {
 pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octaves) -> Field {
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position);
-    let b = lower.b();
-    let size = b.sqrt(spread.eigenvalues[0]);
-    // The first octave dominates: it decides what the footprint is to the source.
-    let wavelengths = lower.b().scale(size, 1.0 / WAVELENGTH);
-    lower.source_footprint(wavelengths);
     let key = format!(
         "lattice {mode:?} {} {}",
         octaves.lacunarity, octaves.diminish

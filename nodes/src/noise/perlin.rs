@@ -87,7 +87,7 @@ impl Kind {
     }
 
     /// The wavelength of the dominant detail, in cells: where k times the energy spectrum peaks.
-    const fn wavelength(self) -> f32 {
+    pub(super) const fn wavelength(self) -> f32 {
         match self {
             Self::Gradient => 1.70,
             Self::Value => 3.14,
@@ -112,10 +112,6 @@ pub(crate) fn filtered(
 ) -> Field {
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position);
-    let b = lower.b();
-    let size = b.sqrt(spread.eigenvalues[0]);
-    let wavelengths = b.scale(size, 1.0 / kind.wavelength());
-    lower.source_footprint(wavelengths);
     let key = format!(
         "{} {mode:?} {} {}",
         kind.name(),

@@ -70,7 +70,7 @@ pub(crate) fn position(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
 }
 
 /// No noise leaves this many standard deviations in practice (once in 10⁶ points of a Gaussian).
-const EXTENT: f32 = 5.0;
+pub(crate) const EXTENT: f32 = 5.0;
 
 /// The field of this standard deviation as a signal: pivot + amplitude/4 · X.
 pub(crate) fn shaped(
