@@ -18,6 +18,7 @@
 //! - What no result reads does not exist: a moment that is not demanded is dead code.
 
 mod extremum;
+mod map;
 mod normal;
 mod piecewise;
 mod position;
@@ -32,13 +33,14 @@ mod wave;
 
 use crate::ir::{Builder, Value};
 
+pub use map::Domain;
+pub(crate) use map::{Grid, Map, SIDE};
 pub use normal::Normal;
 pub use piecewise::{Knot, Piecewise, Shape};
-pub(crate) use position::scale_function;
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
 pub(crate) use tabulated::{Sampled, Samples, Tabulated, sample_points};
-pub use transfer::{Gaussian, Moments, Transfer};
+pub use transfer::{Gaussian, Moments, SharedTransfer, Transfer};
 pub use wave::SquareWave;
 
 /// Which moments signals carry.
@@ -123,14 +125,12 @@ impl Algebra {
             signal.private = self.b.add(signal.private, variance);
         }
     }
+}
 
-    /// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be
-    /// seen.
-    pub fn spread(&mut self, variance: Value) -> (Value, Value) {
-        let b = &mut self.b;
-        let raised = b.offset(variance, 1e-12);
-        let sd = b.sqrt(raised);
-        let one = b.f32(1.0);
-        (sd, b.div(one, sd))
-    }
+/// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be seen.
+pub(crate) fn spread(b: &mut Builder, variance: Value) -> (Value, Value) {
+    let raised = b.offset(variance, 1e-12);
+    let sd = b.sqrt(raised);
+    let one = b.f32(1.0);
+    (sd, b.div(one, sd))
 }

@@ -11,6 +11,7 @@ mod absval;
 mod add;
 mod checkerboard;
 mod clamp;
+mod colormap2d;
 mod colorramp;
 mod combine3;
 mod constant;
@@ -79,6 +80,7 @@ static CATALOGUE: &[NodeDef] = &[
     smoothstep::DEF,
     step::DEF,
     // Color.
+    colormap2d::DEF,
     colorramp::DEF,
     luminance::DEF,
     // Coordinate.

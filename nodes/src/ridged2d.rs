@@ -11,7 +11,7 @@ use mipless_graph::{
 };
 
 /// max |CDF − Φ| of three octaves with the default ports.
-const DEVIATION: f32 = 0.05;
+const DEVIATION: f32 = 0.07;
 
 static SPEC: NodeSpec = NodeSpec {
     name: "ridged2d",
@@ -29,12 +29,14 @@ static SPEC: NodeSpec = NodeSpec {
             `noise2d` of variance 1 at lacunarityᵏ · frequency · texcoord; the last one of a \
             fractional count has that share of its amplitude.",
         statistics: "The first octave has mean (offset − 0.1995)² + 0.0227; with the default ports all \
-            three have mean 1.1 and standard deviation 0.26, max |CDF − Φ| is 0.05. The dominant \
+            three have mean 1.12 and standard deviation 0.31, max |CDF − Φ| is 0.07. The dominant \
             wavelength is half of the noise’s. Each octave is a filtered noise put through the \
             ridge, (offset − |x|/4)², in closed form; its weight is the clamp of the one before, \
             with the covariance between them, and products are Isserlis’s.",
         accuracy: "After a smooth step or a step, the mean is within 0.043 and 0.071 (RMS over \
-            footprints from 0.03 to 2 wavelengths, 3 octaves); held by `nodes/tests/fractal.rs`.",
+            footprints from 0.03 to 2 wavelengths, 3 octaves), before them within 0.043. The mean of \
+            a large footprint is within 0.009, its standard deviation within 0.015: the weights \
+            are not Gaussian. Held by `nodes/tests/fractal.rs`.",
         references: "Musgrave, in Ebert et al. 2003, *Texturing and Modeling*, ch. 16 \
             (RidgedMultifractal); Leone, Nelson & Nottingham 1961, *The Folded Normal \
             Distribution*; Isserlis 1918.",

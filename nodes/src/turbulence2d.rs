@@ -24,7 +24,7 @@ static SPEC: NodeSpec = NodeSpec {
             Each octave is a filtered noise put through |x| (a folded normal); of an octave that \
             the footprint has removed its mean and its variance are left.",
         accuracy: "After a smooth step or a step, the mean is within 0.047 and 0.077 (RMS over \
-            footprints from 0.03 to 2 wavelengths); held by `nodes/tests/fractal.rs`.",
+            footprints from 0.03 to 2 wavelengths, 4 octaves), before them within 0.023; held by `nodes/tests/fractal.rs`.",
         references: "Perlin 1985, *An Image Synthesizer* (turbulence); Leone, Nelson & Nottingham \
             1961, *The Folded Normal Distribution*. libnoise and noise-rs `Billow` with another \
             scale: 2|n| − 1.",

@@ -8,9 +8,10 @@
 mod distortion;
 mod segment;
 
-use super::{Gaussian, Moments, Normal, Transfer, signal::UNBOUNDED};
+use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer, signal::UNBOUNDED};
 use crate::ir::{Builder, Value};
 use segment::Segment;
+use smallvec::smallvec;
 
 /// Where a piecewise function jumps or bends.
 #[derive(Clone, Copy, Debug)]
@@ -308,6 +309,37 @@ impl Transfer for Piecewise {
         }
         out.distortion = t.distortion(b, x, out.mean, out.slope);
         out
+    }
+
+    fn shared(&self, b: &mut Builder, range: [f32; 2]) -> Option<SharedTransfer> {
+        let t = self.within(b, range);
+        let mut values = smallvec![t.offset, t.slope];
+        for knot in &t.knots {
+            values.extend([knot.at, knot.jump, knot.bend]);
+        }
+        values.extend_from_slice(&t.smooth);
+        Some(SharedTransfer {
+            name: "piecewise",
+            doc: "A piecewise function of a signal.",
+            variant: t.knots.len() as u32,
+            values,
+            rebuild: |knots, values| {
+                let (line, rest) = values.split_at(2);
+                let (knots, smooth) = rest.split_at(3 * knots as usize);
+                Box::new(Self {
+                    offset: line[0],
+                    slope: line[1],
+                    knots: (knots.chunks_exact(3))
+                        .map(|k| Knot {
+                            at: k[0],
+                            jump: k[1],
+                            bend: k[2],
+                        })
+                        .collect(),
+                    smooth: smooth.to_vec(),
+                })
+            },
+        })
     }
 
     fn binary(&self, b: &Builder) -> Option<[f32; 2]> {

@@ -112,7 +112,14 @@ impl Signal {
     /// ½‖H‖² + Σ c² + private: the variance beyond the linear response.
     pub fn other_variance(&self, b: &mut Builder) -> Value {
         let second = half_contraction(b, self.h, self.h);
-        let mut sum = b.add(second, self.private);
+        let own = b.add(second, self.private);
+        let shared = self.shared_variance(b);
+        b.add(own, shared)
+    }
+
+    /// Σ c²: the variance of shared symbols.
+    pub(super) fn shared_variance(&self, b: &mut Builder) -> Value {
+        let mut sum = b.f32(0.0);
         for &(_, c) in &self.shared {
             let square = b.square(c);
             sum = b.add(sum, square);
@@ -130,18 +137,26 @@ impl Signal {
     /// The covariance with another signal: the dot product of the coefficients.
     pub fn covariance(&self, b: &mut Builder, other: &Self) -> Covariance {
         let linear = b.dot(&self.g, &other.g);
-        let mut rest = half_contraction(b, self.h, other.h);
-        for &(symbol, c) in &self.shared {
-            if let Some(d) = other.coefficient(symbol) {
-                let product = b.mul(c, d);
-                rest = b.add(rest, product);
-            }
-        }
+        let second = half_contraction(b, self.h, other.h);
+        let shared = self.shared_covariance(b, other);
+        let rest = b.add(second, shared);
         Covariance {
             linear,
             rest,
             total: b.add(linear, rest),
         }
+    }
+
+    /// Σ c d over the symbols that both carry.
+    pub(super) fn shared_covariance(&self, b: &mut Builder, other: &Self) -> Value {
+        let mut sum = b.f32(0.0);
+        for &(symbol, c) in &self.shared {
+            if let Some(d) = other.coefficient(symbol) {
+                let product = b.mul(c, d);
+                sum = b.add(sum, product);
+            }
+        }
+        sum
     }
 
     /// The coefficient of a shared symbol.

@@ -1,10 +1,11 @@
 //! Smooth transfers: sine, integer and real powers, the reciprocal.
 
 use super::{
-    Gaussian, Moments, Normal, Transfer,
+    Gaussian, Moments, Normal, SharedTransfer, Transfer,
     signal::{UNBOUNDED, ordered},
 };
 use crate::ir::{Builder, Value};
+use smallvec::SmallVec;
 
 /// sin(x + phase), x in radians. E[sin] = sin(m) e^{−v/2}; exact for a Gaussian.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +80,16 @@ impl Transfer for Sine {
 
     fn period(&self) -> Option<f32> {
         Some(std::f32::consts::TAU)
+    }
+
+    fn shared(&self, _: &mut Builder, _: [f32; 2]) -> Option<SharedTransfer> {
+        (self.phase == 0.0).then(|| SharedTransfer {
+            name: "sine",
+            doc: "The sine of a signal.",
+            variant: 0,
+            values: SmallVec::new(),
+            rebuild: |_, _| Box::new(Self { phase: 0.0 }),
+        })
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::{
     Algebra, Gaussian, Knot, Mode, Piecewise, Polynomial, RealPower, Reciprocal, Shape, Sine,
-    SquareWave, Transfer,
+    SquareWave, Transfer, spread,
 };
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::float::Float;
@@ -21,7 +21,7 @@ fn module(make: Make<'_>, range: [f32; 2]) -> Module {
     let mut b = Builder::new("moments", "The moments of a transfer.");
     let (mean, variance) = (b.param_f32("m"), b.param_f32("v"));
     let mut algebra = Algebra::new(b, Mode::Quad);
-    let (sd, inverse_sd) = algebra.spread(variance);
+    let (sd, inverse_sd) = spread(&mut algebra.b, variance);
     let b = &mut algebra.b;
     let transfer = make(b);
     let moments = transfer.moments(

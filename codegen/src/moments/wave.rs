@@ -1,7 +1,8 @@
 //! Square waves, filtered by whichever series converges.
 
-use super::{Gaussian, Moments, Normal, Transfer};
+use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer};
 use crate::ir::{Builder, Value};
+use smallvec::smallvec;
 
 /// 1 where the fraction of x is below `width`, else 0; x in periods.
 ///
@@ -144,6 +145,16 @@ impl Transfer for SquareWave {
 
     fn period(&self) -> Option<f32> {
         Some(1.0)
+    }
+
+    fn shared(&self, _: &mut Builder, _: [f32; 2]) -> Option<SharedTransfer> {
+        Some(SharedTransfer {
+            name: "square_wave",
+            doc: "A square wave of a signal.",
+            variant: 0,
+            values: smallvec![self.width],
+            rebuild: |_, values| Box::new(Self { width: values[0] }),
+        })
     }
 
     fn binary(&self, _: &Builder) -> Option<[f32; 2]> {

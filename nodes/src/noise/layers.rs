@@ -33,7 +33,9 @@ pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) 
         let one = Octaves {
             count: 1,
             part: 0.0,
-            seed: octaves.seed.wrapping_add(k.wrapping_mul(0x9e37_79b9) as i32),
+            seed: octaves
+                .seed
+                .wrapping_add(k.wrapping_mul(0x9e37_79b9) as i32),
             ..octaves
         };
         let field = kernel.filtered(lower, &position, one);

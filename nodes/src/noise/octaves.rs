@@ -44,5 +44,6 @@ pub(crate) fn octaves(lower: &Lower<'_>, node: &Node) -> Octaves {
         lacunarity: lower.float(node, "lacunarity"),
         diminish: lower.float(node, "diminish"),
         seed: lower.integer(node, "seed"),
+        period: 0,
     }
 }

@@ -12,6 +12,7 @@
 //! - What the filter removed comes from the energy spectrum ([`energy`]).
 
 mod energy;
+mod grid;
 mod near;
 mod point;
 mod profile;
@@ -19,9 +20,10 @@ mod window;
 
 use super::field::{Field, Spread};
 use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
-use super::lattice::{Octave, Octaves, orders, window as start};
+use super::lattice::{Octave, Octaves, parts};
 use super::remainder::{remainder, share};
 use energy::{Footprint, energies};
+use grid::Grid;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Value};
 use mipless_codegen::moments::{Mode, Signal};
@@ -112,33 +114,40 @@ pub(crate) fn filtered(
 ) -> Field {
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position);
-    let key = format!(
-        "{} {mode:?} {} {}",
-        kind.name(),
-        octaves.lacunarity,
-        octaves.diminish
-    );
+    let Octaves {
+        lacunarity,
+        diminish,
+        ..
+    } = octaves;
+    let tiles = octaves.tiles();
+    let name = kind.name();
+    let key = format!("{name} {mode:?} {lacunarity} {diminish} {tiles}");
     let octave = match mode {
         Mode::Point => lower.function(&key, |module| point::octave(module, kind, octaves)),
         _ => lower.function(&key, |module| filtered_octave(module, kind, mode, octaves)),
     };
-    octaves.sum(lower, &octave, position, &spread)
+    let mut captures = Vec::new();
+    if mode != Mode::Point {
+        captures.extend(spread.covariance);
+        captures.extend(spread.eigenvalues);
+    }
+    octaves.sum(lower, &octave, position, &captures)
 }
 
 /// One octave of the filtered noise, the body of a fold.
 fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves) -> FunctionRef {
-    let near = near::sums(module, kind, mode);
-    let row = window::row(module, kind, mode);
-    let orders = orders(mode);
+    let near = near::sums(module, kind, mode, octaves.tiles());
+    let row = window::row(module, kind, mode, octaves.tiles());
+    let parts = parts(mode);
     let doc = "One more octave of the filtered noise.";
     let mut b = Builder::new(format!("{}_octave", kind.name()), doc);
     b.param("index", mipless_codegen::ir::Type::U32);
-    let sums: Vec<Value> = NAMES[..orders]
+    let sums: Vec<Value> = NAMES[..parts]
         .iter()
         .map(|name| b.param_f32(*name))
         .collect();
     let rest = mode.spreads().then(|| b.param_f32("rest"));
-    let state = Octave::declare(&mut b);
+    let state = Octave::declare(&mut b, octaves);
     let covariance = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
     let eigenvalues = ["s_major", "s_minor"].map(|name| b.param_f32(name));
 
@@ -166,11 +175,11 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
 
     let is_near = b.lt(zero, by_near);
     let turns = b.select(is_near, once, none);
-    let mut captures = state.cells.to_vec();
+    let grid = Grid::of(&state).captures();
+    let mut captures = grid.clone();
     captures.extend(state.fractions);
-    captures.push(state.seed);
     captures.extend(covariance);
-    let close = b.fold(&near, turns, &vec![zero; orders], &captures);
+    let close = b.fold(&near, turns, &vec![zero; parts], &captures);
 
     let used = b.mul(by_window, window.fade);
     let is_used = b.lt(zero, used);
@@ -179,13 +188,12 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     let rows = b.select(is_used, rows, none);
     let columns = b.trunc_i(window.columns);
     let columns = b.cast_u(columns);
-    let start_y = start(&mut b, state.fractions[1], window.rows);
+    let start_y = window::start_of(&mut b, state.fractions[1], window.rows);
     let mut captures = vec![start_y, window.columns, columns, window.shear];
-    captures.extend(state.cells);
+    captures.extend(grid);
     captures.extend(state.fractions);
-    captures.push(state.seed);
     captures.extend(&window.captures);
-    let kernels = b.fold(&row, rows, &vec![zero; orders], &captures);
+    let kernels = b.fold(&row, rows, &vec![zero; parts], &captures);
     let wide = window.derivatives(&mut b, &kernels);
 
     // Both parts, in units of the position.

@@ -1,24 +1,23 @@
 //! The noise over a footprint that is narrow against a cell: polynomials, exact at a point.
 
-use super::point::corners;
-use super::profile::{DERIVATIVES, joint, orders, quintic};
+use super::grid::Grid;
+use super::profile::{DERIVATIVES, joint, quintic};
 use super::{Kind, NAMES};
+use crate::noise::lattice::parts;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 
 /// The four corners' kernels and their derivatives in cells, the body of a fold of at most one
-/// turn: the state is replaced. Captures: the cell, the fraction, the seed and the footprint's
-/// covariance.
-pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode) -> FunctionRef {
+/// turn: the state is replaced. Captures: the grid, the fraction and the footprint's covariance.
+pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
     let doc = "The noise over a footprint that is narrow against a cell.";
     let mut b = Builder::new(format!("{}_near", kind.name()), doc);
     b.param("index", Type::U32);
-    for name in &NAMES[..orders(mode)] {
+    for name in &NAMES[..parts(mode)] {
         b.param_f32(format!("state_{name}"));
     }
-    let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
+    let grid = Grid::declare(&mut b, tiles);
     let fractions = [b.param_f32("x"), b.param_f32("y")];
-    let seed = b.param("seed", Type::U32);
     let xx = b.param_f32("s_xx");
     let xy = b.param_f32("s_xy");
     let yy = b.param_f32("s_yy");
@@ -33,8 +32,8 @@ pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode) -> FunctionRef {
             quintic(&mut b, back, true, spread),
         ]);
     }
-    let hashes = corners(&mut b, cells, seed);
-    let mut totals: Vec<Value> = vec![b.f32(0.0); orders(mode)];
+    let hashes = grid.corners(&mut b);
+    let mut totals: Vec<Value> = vec![b.f32(0.0); parts(mode)];
     for (corner, hash) in hashes.into_iter().enumerate() {
         let (x, y) = (&axes[0][corner % 2], &axes[1][corner / 2]);
         let weights = kind.weights(&mut b, hash);

@@ -1,26 +1,9 @@
 //! The unfiltered noise: four corners.
 
 use super::Kind;
-use crate::noise::hash::{COLUMN_FACTOR, ROW_FACTOR, corner};
+use super::grid::Grid;
 use crate::noise::lattice::{Octave, Octaves};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
-
-/// The hashes of the four corners of a cell: (0, 0), (1, 0), (0, 1), (1, 1).
-pub(super) fn corners(b: &mut Builder, cells: [Value; 2], seed: Value) -> [Value; 4] {
-    let none = b.u32(0);
-    let axes = [
-        (cells[0], COLUMN_FACTOR, none),
-        (cells[1], ROW_FACTOR, seed),
-    ];
-    let [columns, rows] = axes.map(|(cell, by, shift)| {
-        let by = b.u32(by);
-        let cell = b.cast_u(cell);
-        let word = b.mul_u(cell, by);
-        let word = b.add_u(word, shift);
-        [word, b.add_u(word, by)]
-    });
-    [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| corner(b, columns[i], rows[j]))
-}
 
 /// The fade of Perlin 2002, 6t⁵ − 15t⁴ + 10t³.
 fn fade(b: &mut Builder, t: Value) -> Value {
@@ -46,8 +29,8 @@ pub(super) fn octave(module: &mut Module, kind: Kind, octaves: Octaves) -> Funct
     let mut b = Builder::new(format!("{}_octave", kind.name()), doc);
     b.param("index", Type::U32);
     let sum = b.param_f32("mean");
-    let state = Octave::declare(&mut b);
-    let hashes = corners(&mut b, state.cells, state.seed);
+    let state = Octave::declare(&mut b, octaves);
+    let hashes = Grid::of(&state).corners(&mut b);
     let offsets = state.fractions.map(|t| [t, b.offset(t, -1.0)]);
     let mut at = 0;
     let corners = hashes.map(|hash| {

@@ -1,7 +1,6 @@
 //! The kernel's profiles along an axis, w(t) and t w(t), with their derivatives.
 
 use mipless_codegen::ir::{Builder, Value};
-use mipless_codegen::moments::Mode;
 
 /// The two profiles, each with its derivatives from the 0th on; those beyond are 0.
 pub(super) type Profiles = [Vec<Value>; 2];
@@ -16,11 +15,6 @@ pub(super) const WIDTH: f32 = 0.3284;
 /// How often each derivative of a sum of kernels is taken along x and along y: the mean, the
 /// gradient, the Hessian.
 pub(super) const DERIVATIVES: [[usize; 2]; 6] = [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]];
-
-/// The number of derivatives that a sum of kernels needs: the first so many of [`DERIVATIVES`].
-pub(super) fn orders(mode: Mode) -> usize {
-    crate::noise::lattice::orders(mode)
-}
 
 /// Σ_k (cᵏ/k!) ∂ᵏf ∂ᵏh with f and h differentiated `along`[0] and `along`[1] times: the expectation
 /// of f(X) h(Y) for Gaussians of covariance c, of which `powers` are cᵏ/k! from k = 1 on.

@@ -7,10 +7,11 @@
 //! alone, and M is applied once at the end:
 //! ∇ = M Σ E(∇G − dG/b²), Hess = M [Σ E(∇²G − (d∇Gᵀ + ∇G dᵀ)/b² + (ddᵀ − T)G/b⁴)] M.
 
-use super::profile::{DERIVATIVES, WIDTH, fitted, joint, orders};
+use super::grid::Grid;
+use super::profile::{DERIVATIVES, WIDTH, fitted, joint};
 use super::{Kind, NAMES};
-use crate::noise::hash::{COLUMN_FACTOR, corner};
-use crate::noise::lattice::{row_hash, window};
+use crate::noise::hash::corner;
+use crate::noise::lattice::parts;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 
@@ -59,33 +60,29 @@ pub(super) fn captures(
 }
 
 fn sums(b: &mut Builder, mode: Mode) -> Vec<Value> {
-    NAMES[..orders(mode)]
+    NAMES[..parts(mode)]
         .iter()
         .map(|name| b.param_f32(format!("sum_{name}")))
         .collect()
 }
 
 /// The filtered kernel of one lattice point, the body of a fold over columns.
-fn kernel(module: &mut Module, kind: Kind, mode: Mode) -> FunctionRef {
+fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
     let doc = "The filtered kernel of one lattice point.";
     let mut b = Builder::new(format!("{}_kernel", kind.name()), doc);
     let index = b.param("index", Type::U32);
     let sums = sums(&mut b, mode);
     let start = b.param_f32("start_x");
     let (x, dy) = (b.param_f32("x"), b.param_f32("dy"));
-    let cell = b.param("cell_x", Type::I32);
-    let row = b.param("row_hash", Type::U32);
+    let row = b.param("row_word", Type::U32);
+    let grid = Grid::declare(&mut b, tiles);
     let footprint = CAPTURES.map(|name| b.param_f32(name));
     let [m_xx, m_xy, m_yy, c_xx, c_yy, ..] = footprint;
     let (powers, t) = (&footprint[5..10], &footprint[10..]);
     let offset = b.float_u(index);
     let place = b.add(start, offset);
     let dx = b.sub(x, place);
-    let column = b.trunc_i(place);
-    let column = b.add_i(cell, column);
-    let column = b.cast_u(column);
-    let factor = b.u32(COLUMN_FACTOR);
-    let column = b.mul_u(column, factor);
+    let column = grid.word(&mut b, 0, place);
     let hash = corner(&mut b, column, row);
     let d = [dx, dy];
     let means = [b.dot(&[m_xx, m_xy], &d), b.dot(&[m_xy, m_yy], &d)];
@@ -137,9 +134,17 @@ fn kernel(module: &mut Module, kind: Kind, mode: Mode) -> FunctionRef {
     b.finish(module)
 }
 
+/// The lattice coordinate that a window of `count` (a real) points around `x` starts at.
+pub(super) fn start_of(b: &mut Builder, x: Value, count: Value) -> Value {
+    let half = b.scale(count, -0.5);
+    let start = b.add(x, half);
+    let start = b.floor(start);
+    b.offset(start, 1.0)
+}
+
 /// One lattice row of filtered kernels, the body of a fold over rows.
-pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode) -> FunctionRef {
-    let kernel = kernel(module, kind, mode);
+pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
+    let kernel = kernel(module, kind, mode, tiles);
     let doc = "The filtered kernels of one lattice row.";
     let mut b = Builder::new(format!("{}_row", kind.name()), doc);
     let index = b.param("index", Type::U32);
@@ -147,19 +152,19 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode) -> FunctionRef {
     let start = b.param_f32("start_y");
     let (columns, count) = (b.param_f32("columns"), b.param("column_count", Type::U32));
     let shear = b.param_f32("shear");
-    let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
+    let grid = Grid::declare(&mut b, tiles);
     let (x, y) = (b.param_f32("x"), b.param_f32("y"));
-    let seed = b.param("seed", Type::U32);
     let footprint = CAPTURES.map(|name| b.param_f32(name));
     let offset = b.float_u(index);
     let place = b.add(start, offset);
     let dy = b.sub(y, place);
-    let hash = row_hash(&mut b, cells[1], place, seed);
+    let word = grid.word(&mut b, 1, place);
     // The row's largest envelope lies where d_x = (T₁₂/T₂₂) d_y.
     let lean = b.mul(shear, dy);
     let centre = b.sub(x, lean);
-    let start = window(&mut b, centre, columns);
-    let mut captures = vec![start, x, dy, cells[0], hash];
+    let start = start_of(&mut b, centre, columns);
+    let mut captures = vec![start, x, dy, word];
+    captures.extend(grid.captures());
     captures.extend(footprint);
     let sums = b.fold(&kernel, count, &sums, &captures);
     for (name, sum) in NAMES.into_iter().zip(sums) {
