@@ -142,6 +142,14 @@ impl InputView for Varying {
     fn choice(&self, _: &str) -> &str {
         ""
     }
+
+    fn number(&self, _: &str) -> f32 {
+        1.0
+    }
+
+    fn stops(&self, _: &str) -> Vec<[f32; 2]> {
+        vec![[1.0, 1.0]]
+    }
 }
 
 /// What all functions of a compilation share.
@@ -338,7 +346,11 @@ impl<'a> Lower<'a> {
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
-                    signal.hermite = Some(self.algebra.fresh_symbol());
+                    if signal.hermite.is_none() {
+                        let symbol = self.algebra.fresh_symbol();
+                        signal.hermite = Some(symbol);
+                        self.carriers.gained(symbol);
+                    }
                 }
             }
             self.bundles[index] = Some(bundle);

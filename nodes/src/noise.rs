@@ -1,6 +1,8 @@
 //! What the noises share: hashing, the lattice kernel, and the field that a filtered source gives.
 
+pub(crate) mod bend;
 pub(crate) mod field;
+pub(crate) mod gabor;
 pub(crate) mod hash;
 pub(crate) mod kernel;
 pub(crate) mod lattice;
@@ -9,5 +11,6 @@ pub(crate) mod octaves;
 pub(crate) mod perlin;
 mod remainder;
 pub(crate) mod ridge;
+pub(crate) mod period;
 pub(crate) mod source;
 pub(crate) mod spectral;

@@ -258,6 +258,38 @@ impl Signal {
         }
     }
 
+    /// `other` where the condition holds, else this.
+    pub(super) fn select(&self, b: &mut Builder, condition: Value, other: &Self) -> Self {
+        let (x, y) = (self.flat(b), other.flat(b));
+        let zero = b.f32(0.0);
+        let mut symbols: SmallVec<[Symbol; 4]> = (x.shared.iter().chain(&y.shared))
+            .map(|&(symbol, _)| symbol)
+            .collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        let shared = symbols.into_iter().map(|symbol| {
+            let [c, d] = [&x, &y].map(|signal| signal.coefficient(symbol).unwrap_or(zero));
+            (symbol, b.select(condition, d, c))
+        });
+        let shared = shared.collect();
+        let mut pick = |c: Value, d: Value| b.select(condition, d, c);
+        Self {
+            mean: pick(x.mean, y.mean),
+            cell: None,
+            g: [pick(x.g[0], y.g[0]), pick(x.g[1], y.g[1])],
+            h: [
+                pick(x.h[0], y.h[0]),
+                pick(x.h[1], y.h[1]),
+                pick(x.h[2], y.h[2]),
+            ],
+            shared,
+            private: pick(x.private, y.private),
+            range: [x.range[0].min(y.range[0]), x.range[1].max(y.range[1])],
+            binary: None,
+            hermite: None,
+        }
+    }
+
     /// `−X`.
     pub fn negate(&self, b: &mut Builder) -> Self {
         let minus = b.f32(-1.0);
@@ -347,6 +379,27 @@ impl Signal {
             .position(|&(s, _)| s > symbol)
             .unwrap_or(self.shared.len());
         self.shared.insert(at, (symbol, coefficient));
+    }
+
+    /// Makes one symbol, the first, of those of `symbols` that the signal carries.
+    pub(crate) fn merge(&mut self, b: &mut Builder, symbols: &[Symbol]) {
+        let mine: Vec<(Symbol, Value)> = (self.shared.iter().copied())
+            .filter(|(symbol, _)| symbols.contains(symbol))
+            .collect();
+        let [(first, start), rest @ ..] = &mine[..] else {
+            return;
+        };
+        if rest.is_empty() {
+            return;
+        }
+        let mut sum = b.square(*start);
+        for (_, coefficient) in rest {
+            let square = b.square(*coefficient);
+            sum = b.add(sum, square);
+        }
+        let (first, root) = (*first, b.sqrt(sum));
+        self.shared.retain(|(symbol, _)| !symbols.contains(symbol));
+        self.push_shared(first, root);
     }
 
     /// Folds a shared symbol into the private variance.
