@@ -36,6 +36,7 @@ mod extract;
 mod floor;
 mod fract;
 mod fractal2d;
+mod fractal3d;
 mod gabornoise2d;
 mod gain;
 mod grid;
@@ -59,10 +60,12 @@ mod modulo;
 mod multifractal2d;
 mod multiply;
 mod noise2d;
+mod noise3d;
 mod overlay;
 mod place2d;
 mod plus;
 mod polar;
+mod position;
 mod power;
 mod quantize;
 mod ramp4;
@@ -106,12 +109,15 @@ use mipless_graph::NodeSpec;
 static CATALOGUE: &[NodeDef] = &[
     // Input.
     constant::DEF,
+    position::DEF,
     texcoord::DEF,
     // Noise.
     fractal2d::DEF,
+    fractal3d::DEF,
     multifractal2d::DEF,
     gabornoise2d::DEF,
     noise2d::DEF,
+    noise3d::DEF,
     ridged2d::DEF,
     spectralnoise2d::DEF,
     turbulence2d::DEF,

@@ -88,6 +88,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
         let kernel = Kernel::Quintic(Kind::Value);
         kernel.report(lower, &position);
         let field = kernel.filtered(lower, &position, octaves);
-        scaled(lower, node, &field, (SD, 0.5 / SD), &position)
+        let unit = field.at(lower, &position);
+        scaled(lower, node, unit, (SD, 0.5 / SD))
     },
 };

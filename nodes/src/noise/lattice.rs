@@ -69,8 +69,30 @@ impl Octaves {
         captures: &[Value],
     ) -> Field {
         let mode = lower.mode();
-        let b = lower.b();
         let parts = parts(mode);
+        let sums = self.fold(lower, octave, position, parts, captures);
+        let zero = lower.b().f32(0.0);
+        let at = |i: usize| if i < parts { sums[i] } else { zero };
+        Field {
+            mean: at(0),
+            gradient: [at(1), at(2)],
+            hessian: [at(3), at(4), at(5)],
+            rest: if mode.spreads() { sums[parts] } else { zero },
+        }
+    }
+
+    /// The last state of the fold over octaves: the `parts` numbers of the field, the rest where the
+    /// mode spreads, and what goes from octave to octave.
+    pub(super) fn fold(
+        self,
+        lower: &mut Lower<'_>,
+        octave: &FunctionRef,
+        position: &[Signal],
+        parts: usize,
+        captures: &[Value],
+    ) -> Vec<Value> {
+        let mode = lower.mode();
+        let b = lower.b();
         let mut init = vec![b.f32(0.0); parts + usize::from(mode.spreads())];
         for axis in position {
             // The lattice needs a cell and a fraction, whatever the position carries.
@@ -100,14 +122,7 @@ impl Octaves {
             let once = b.u32(1);
             sums = b.fold(octave, once, &sums, captures);
         }
-        let zero = b.f32(0.0);
-        let at = |i: usize| if i < parts { sums[i] } else { zero };
-        Field {
-            mean: at(0),
-            gradient: [at(1), at(2)],
-            hessian: [at(3), at(4), at(5)],
-            rest: if mode.spreads() { sums[parts] } else { zero },
-        }
+        sums
     }
 }
 

@@ -61,10 +61,28 @@ pub(crate) const KERNEL: PortSpec = PortSpec::new(
      is Perlin's gradient noise.",
 );
 
+/// Where in space.
+pub(crate) const POSITION: PortSpec = PortSpec::new(
+    "position",
+    PortType::Exactly(Type::Vector3),
+    Default::Surface,
+    "Where the noise is evaluated.",
+)
+.unit("units of space");
+
+/// position · frequency.
+pub(crate) fn place(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
+    scaled_by_frequency(lower, node, "position")
+}
+
 /// texcoord · frequency.
 pub(crate) fn position(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
+    scaled_by_frequency(lower, node, "texcoord")
+}
+
+fn scaled_by_frequency(lower: &mut Lower<'_>, node: &Node, port: &str) -> Vec<Signal> {
     let frequency = lower.signal(node, "frequency");
-    (lower.bundle(node, "texcoord").iter())
+    (lower.bundle(node, port).iter())
         .map(|axis| lower.algebra.product(axis, &frequency))
         .collect()
 }
@@ -80,20 +98,21 @@ pub(crate) fn shaped(
     sd: f32,
     position: &[Signal],
 ) -> Vec<Signal> {
-    scaled(lower, node, field, (0.25, EXTENT * sd), position)
+    let unit = field.at(lower, position);
+    scaled(lower, node, unit, (0.25, EXTENT * sd))
 }
 
-/// The field as a signal: pivot + amplitude · `factor` · X, with |X| at most `extent`.
+/// A noise X of variance 1 as the node's output: pivot + amplitude · `factor` · X, with |X| at most
+/// `extent`.
 pub(crate) fn scaled(
     lower: &mut Lower<'_>,
     node: &Node,
-    field: &Field,
+    unit: Signal,
     (factor, extent): (f32, f32),
-    position: &[Signal],
 ) -> Vec<Signal> {
     let amplitude = lower.signal(node, "amplitude");
     let pivot = lower.signal(node, "pivot");
-    let unit = field.at(lower, position).with_range([-extent, extent]);
+    let unit = unit.with_range([-extent, extent]);
     let b = lower.b();
     let factor = b.f32(factor);
     let amplitude = amplitude.scale(b, factor);
