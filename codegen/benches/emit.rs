@@ -50,6 +50,7 @@ fn program(nodes: usize) -> Program {
             default: Vec::new(),
         }],
         moments: false,
+        position: false,
     };
     Program { module, interface }
 }

@@ -46,6 +46,33 @@ pub struct Footprint {
     pub dv: [f32; 2],
 }
 
+/// Where a pixel's centre lies in space, and how that changes from pixel to pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Position {
+    /// The integer part; any integers.
+    pub cell: [i32; 3],
+    /// The position from `cell`, usually in [0, 1).
+    pub xyz: [f32; 3],
+    /// The change of the position from a pixel to the next one to the right.
+    pub dx: [f32; 3],
+    /// The change of the position from a pixel to the one below.
+    pub dy: [f32; 3],
+}
+
+impl Position {
+    /// The position of a pixel of a flat texture: (u, v, 0).
+    pub fn flat(footprint: &Footprint) -> Self {
+        let Footprint { cell, uv, du, dv } = *footprint;
+        let raised = |[x, y]: [f32; 2]| [x, y, 0.0];
+        Self {
+            cell: [cell[0], cell[1], 0],
+            xyz: raised(uv),
+            dx: raised(du),
+            dy: raised(dv),
+        }
+    }
+}
+
 /// The argument of one parameter of the entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input<'a> {
@@ -83,6 +110,8 @@ impl<F: Float> Default for Scratch<F> {
 pub struct Evaluator<F> {
     code: Code<F>,
     is_uniform: Vec<bool>,
+    /// How many parameters say where the pixel is, in a program.
+    place: usize,
     runner: Runner<F>,
 }
 
@@ -97,7 +126,11 @@ impl<F: Float> Evaluator<F> {
 
     /// Compiles `program`: what follows the footprint in the entry's parameters is uniform.
     pub fn of_program(program: &Program) -> Self {
-        Self::with_uniform(&program.module, |parameter| parameter >= FOOTPRINT.len())
+        let place = program.interface.place();
+        Self {
+            place,
+            ..Self::with_uniform(&program.module, |parameter| parameter >= place)
+        }
     }
 
     /// Compiles `module`; `is_uniform` says which of the entry's parameters, by position, have one
@@ -112,6 +145,7 @@ impl<F: Float> Evaluator<F> {
                 &is_uniform,
             ),
             is_uniform: (0..module.entry().params.len()).map(is_uniform).collect(),
+            place: FOOTPRINT.len(),
             runner: runner(Level::detect()),
         }
     }
@@ -256,7 +290,8 @@ impl<F: Float> Evaluator<F> {
     /// Evaluates a program compiled by [`Evaluator::of_program`] at `footprints`: the uniform
     /// `parameters`, one number for each scalar that follows the footprint in the entry's
     /// parameters, become integers (rounded towards 0) or truth values (whether not 0) as their
-    /// types ask.
+    /// types ask. A program that reads the position in space sees a flat texture:
+    /// [`Position::flat`].
     ///
     /// # Panics
     /// If the number of parameters is not the program's.
@@ -264,6 +299,33 @@ impl<F: Float> Evaluator<F> {
         &self,
         scratch: &mut Scratch<F>,
         footprints: &[Footprint],
+        parameters: &[f32],
+        outputs: &mut Vec<Vec<F>>,
+    ) {
+        let positions: Vec<Position> = if self.reads_position() {
+            footprints.iter().map(Position::flat).collect()
+        } else {
+            Vec::new()
+        };
+        self.evaluate_surface(scratch, footprints, &positions, parameters, outputs);
+    }
+
+    /// Whether the program reads the position in space.
+    pub fn reads_position(&self) -> bool {
+        self.place > FOOTPRINT.len()
+    }
+
+    /// As [`Evaluator::evaluate_footprints`], with the positions in space of the same pixels; a
+    /// program that does not read them needs none.
+    ///
+    /// # Panics
+    /// If the number of parameters is not the program's, or if it reads positions and there are
+    /// other than one for each footprint.
+    pub fn evaluate_surface(
+        &self,
+        scratch: &mut Scratch<F>,
+        footprints: &[Footprint],
+        positions: &[Position],
         parameters: &[f32],
         outputs: &mut Vec<Vec<F>>,
     ) {
@@ -277,14 +339,26 @@ impl<F: Float> Evaluator<F> {
             |f| f.dv[1],
         ];
         let floats = floats.map(|get| footprints.iter().map(get).collect::<Vec<f32>>());
-        let uniform = self
-            .code
-            .parameters
-            .iter()
-            .skip(FOOTPRINT.len())
-            .zip(parameters);
+        let positions = if self.reads_position() {
+            positions
+        } else {
+            &[]
+        };
+        let space_cells =
+            [0, 1, 2].map(|i| positions.iter().map(|p| p.cell[i]).collect::<Vec<i32>>());
+        let space: Vec<Vec<f32>> = (0..9)
+            .map(|i| {
+                let get = |p: &Position| [p.xyz, p.dx, p.dy][i / 3][i % 3];
+                positions.iter().map(get).collect()
+            })
+            .collect();
+        let place = (space_cells.iter().map(|all| Input::Integers(all)))
+            .chain(space.iter().map(|all| Input::Floats(all)))
+            .take(self.place - FOOTPRINT.len());
+        let uniform = self.code.parameters.iter().skip(self.place).zip(parameters);
         let inputs: Vec<Input<'_>> = (cells.iter().map(|all| Input::Integers(all)))
             .chain(floats.iter().map(|all| Input::Floats(all)))
+            .chain(place)
             .chain(uniform.map(|(&(ty, _), &x)| match ty {
                 Type::F32 => Input::Float(x),
                 Type::I32 => Input::Integer(x as i32),
@@ -292,7 +366,7 @@ impl<F: Float> Evaluator<F> {
                 Type::Bool => Input::Integer(i32::from(x != 0.0)),
             }))
             .collect();
-        let expected = self.code.parameters.len() - FOOTPRINT.len();
+        let expected = self.code.parameters.len() - self.place;
         assert_eq!(parameters.len(), expected, "parameters of the program");
         self.evaluate(scratch, &inputs, footprints.len(), outputs);
     }

@@ -256,13 +256,23 @@ pub struct Interface {
     /// parameters, in order: `cell_x, cell_y` (i32), `u, v, du_dx, dv_dx, du_dy, dv_dy` (f32),
     /// where (u, v) is `Footprint::uv`, (du_dx, dv_dx) is `Footprint::du` (the change of uv from a
     /// pixel to the next one to the right) and (du_dy, dv_dy) is `Footprint::dv` (… to the one
-    /// below).
+    /// below). Where `position` holds, the twelve scalars of [`POSITION`] come between.
     pub parameters: Vec<Port>,
     /// The graph's outputs, in order: the scalars of their means make up the first results of the
     /// entry.
     pub outputs: Vec<Port>,
     /// Whether the variances of all outputs follow all means in the results.
     pub moments: bool,
+    /// Whether the texture reads the surface's position in space.
+    pub position: bool,
+}
+
+impl Interface {
+    /// How many of the entry's parameters say where the pixel is: those of the footprint and of the
+    /// position, before the graph's inputs.
+    pub const fn place(&self) -> usize {
+        FOOTPRINT.len() + if self.position { POSITION.len() } else { 0 }
+    }
 }
 
 /// The eight scalars of a footprint, as parameters of every entry.
@@ -275,6 +285,23 @@ pub const FOOTPRINT: [(&str, Type); 8] = [
     ("dv_dx", Type::F32),
     ("du_dy", Type::F32),
     ("dv_dy", Type::F32),
+];
+
+/// The twelve scalars of a position in space, as parameters of entries that read it: the integer
+/// part, the rest, and the change from a pixel to the next one to the right and to the one below.
+pub const POSITION: [(&str, Type); 12] = [
+    ("space_cell_x", Type::I32),
+    ("space_cell_y", Type::I32),
+    ("space_cell_z", Type::I32),
+    ("space_x", Type::F32),
+    ("space_y", Type::F32),
+    ("space_z", Type::F32),
+    ("dx_dx", Type::F32),
+    ("dy_dx", Type::F32),
+    ("dz_dx", Type::F32),
+    ("dx_dy", Type::F32),
+    ("dy_dy", Type::F32),
+    ("dz_dy", Type::F32),
 ];
 
 /// A typed input or output of a texture.

@@ -14,8 +14,8 @@ mod symbols;
 pub use method::{Method, ParseMethodError, PixelFilter};
 
 use crate::ir::{
-    Builder, FOOTPRINT, FunctionRef, Interface, Library, Module, Port, Program, Type as Scalar,
-    Value,
+    Builder, FOOTPRINT, FunctionRef, Interface, Library, Module, POSITION, Port, Program,
+    Type as Scalar, Value,
 };
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol};
 use mipless_graph::{
@@ -83,6 +83,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
             })
             .collect(),
         moments: options.moments,
+        position: symbols::reads_position(graph),
     };
     let live = symbols::live(graph);
     let crossed = symbols::crossed(graph);
@@ -178,12 +179,16 @@ struct Compiler<'a> {
 /// The parameters of an entry or of a function that stands for the graph.
 struct Arguments {
     footprint: [Value; 8],
+    /// Where the graph reads the position in space.
+    position: Option<[Value; 12]>,
     parameters: Vec<Value>,
 }
 
 impl Arguments {
     fn declare(b: &mut Builder, graph: &Graph) -> Self {
         let footprint = FOOTPRINT.map(|(name, ty)| b.param(name, ty));
+        let position =
+            symbols::reads_position(graph).then(|| POSITION.map(|(name, ty)| b.param(name, ty)));
         let mut parameters = Vec::new();
         for parameter in &graph.parameters {
             let components = parameter.ty.components();
@@ -205,6 +210,7 @@ impl Arguments {
         }
         Self {
             footprint,
+            position,
             parameters,
         }
     }
@@ -212,10 +218,34 @@ impl Arguments {
     fn all(&self) -> Vec<Value> {
         self.footprint
             .iter()
+            .chain(self.position.iter().flatten())
             .chain(&self.parameters)
             .copied()
             .collect()
     }
+}
+
+/// A coordinate of the surface: its mean carried as a cell and a fraction in [0, 1), and its
+/// changes from pixel to pixel times the standard deviation of the filter, if it spreads.
+fn place(
+    b: &mut Builder,
+    cell: Value,
+    fraction: Value,
+    spread: Option<([Value; 2], f32)>,
+) -> Signal {
+    let zero = b.f32(0.0);
+    let start = Signal {
+        cell: Some(cell),
+        ..Signal::certain(b, zero)
+    };
+    let mut signal = start.offset(b, fraction);
+    if signal.cell.is_none() || b.is_zero(fraction) {
+        signal.cell = Some(cell);
+    }
+    if let Some((change, sd)) = spread {
+        signal.g = change.map(|x| b.scale(x, sd));
+    }
+    signal
 }
 
 /// The state of the lowering of one function of the graph; what nodes build through.
@@ -429,23 +459,31 @@ impl<'a> Lower<'a> {
         let s = self.filter_sd;
         let spreads = self.algebra.mode.filters();
         let b = &mut self.algebra.b;
-        let zero = b.f32(0.0);
-        [(cell_x, u, du_dx, du_dy), (cell_y, v, dv_dx, dv_dy)]
-            .map(|(cell, fraction, x, y)| {
-                let start = Signal {
-                    cell: Some(cell),
-                    ..Signal::certain(b, zero)
-                };
-                let mut signal = start.offset(b, fraction);
-                if signal.cell.is_none() || b.is_zero(fraction) {
-                    signal.cell = Some(cell);
-                }
-                if spreads {
-                    signal.g = [b.scale(x, s), b.scale(y, s)];
-                }
-                signal
+        [(cell_x, u, [du_dx, du_dy]), (cell_y, v, [dv_dx, dv_dy])]
+            .map(|(cell, fraction, change)| {
+                place(b, cell, fraction, spreads.then_some((change, s)))
             })
             .to_vec()
+    }
+
+    /// The surface's position in space: cells and fractions, g = A.
+    ///
+    /// # Panics
+    /// If no class rule of the graph says that a vector of three components is a position.
+    pub fn space(&mut self) -> Bundle {
+        let all = self
+            .arguments
+            .position
+            .expect("the graph reads the position");
+        let s = self.filter_sd;
+        let spreads = self.algebra.mode.filters();
+        let b = &mut self.algebra.b;
+        (0..3)
+            .map(|axis| {
+                let change = [all[6 + axis], all[9 + axis]];
+                place(b, all[axis], all[3 + axis], spreads.then_some((change, s)))
+            })
+            .collect()
     }
 
     /// The signals of an input, of the type that the node sees.
@@ -464,6 +502,7 @@ impl<'a> Lower<'a> {
                     .collect()
             }
             Source::Node(id) => self.output(*id),
+            Source::Surface if input.ty == Type::Vector3 => self.space(),
             Source::Surface => self.surface(),
             Source::Parameter(id) => {
                 let parameter = &self.compiler.graph.parameters[id.index()];

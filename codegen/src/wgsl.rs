@@ -8,6 +8,9 @@
 //! struct MarbleOutputs { base_color: vec3f, … }
 //! fn marble(footprint: Footprint, parameters: MarbleParameters) -> MarbleOutputs
 //! ```
+//! - A graph that reads the position in space takes it as its second argument:
+//!   `struct Position { cell: vec3i, xyz: vec3f, dx: vec3f, dy: vec3f }`, at cell + xyz, with the
+//!   changes to the next pixel on the right and below.
 //! - Without parameters there is no `MarbleParameters` and no second argument.
 //! - With [`Interface::moments`](crate::ir::Interface::moments), `base_color_variance` and so on
 //!   follow all means. A boolean parameter is a `u32`, not 0 for true.
@@ -19,7 +22,7 @@
 //! `marble_compute` evaluates an array of footprints, with workgroups of [`WORKGROUP_SIZE`]:
 //! | binding of group 0 | holds |
 //! |---|---|
-//! | 0 storage, read | `array<Footprint>`: 32 bytes each: `cell` 2 × i32, `uv`, `du`, `dv` 2 × f32 each |
+//! | 0 storage, read | `array<Footprint>`: 32 bytes each: `cell` 2 × i32, `uv`, `du`, `dv` 2 × f32 each; where the position is read, `array<Pixel>`: 96 bytes each, the footprint and then `cell` 3 × i32, `xyz`, `dx`, `dy` 3 × f32 each, each in 16 bytes |
 //! | 1 uniform | the struct of parameters, laid out as [`Shader::parameters`] says and packed by [`Shader::pack_parameters`]; absent without parameters |
 //! | 2 storage, read and write | `array<f32>`: for each footprint all scalars of all outputs in order, without padding; integers and truth values (0, 1) as f32 |
 //! | 3 storage, read | the tables, [`Tables::data`]; absent without tables |
@@ -211,6 +214,8 @@ pub struct Shader {
     pub outputs: Vec<OutputField>,
     /// The contents of the binding of tables, if there are any.
     pub tables: Option<Tables>,
+    /// Whether the function takes the position in space as its second argument.
+    pub position: bool,
 }
 
 impl Shader {
@@ -255,6 +260,8 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     let stem = prefix.strip_suffix("_value").unwrap_or(&prefix);
     let mut globals = Scope::default();
     globals.take("Footprint".to_owned());
+    globals.take("Position".to_owned());
+    globals.take("Pixel".to_owned());
     let names = Names {
         function: globals.take(prefix.clone()),
         parameters: globals.take(format!("{}Parameters", camel(stem))),
@@ -365,6 +372,7 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         parameters: face.parameters,
         parameters_size: face.parameters_size,
         outputs: face.outputs,
+        position: face.position,
         tables,
     }
 }

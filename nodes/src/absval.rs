@@ -10,7 +10,7 @@ use crate::componentwise::{transfer, unary};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "absval",
-    aliases: &["abs", "absolute", "folds", "turbulence"],
+    aliases: &["abs", "absolute", "folds"],
     category: Category::Transfer,
     summary: "The magnitude of a signal.",
     doc: Doc {

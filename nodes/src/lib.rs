@@ -50,6 +50,7 @@ mod extract;
 mod floor;
 mod fract;
 mod fractal2d;
+mod fractal3d;
 mod gabornoise2d;
 mod gain;
 mod grid;
@@ -76,15 +77,18 @@ mod minus;
 mod mirror;
 mod mix;
 mod modulo;
+mod multifractal2d;
 mod multiply;
 mod noise2d;
 mod normalize;
 mod out;
 mod over;
+mod noise3d;
 mod overlay;
 mod place2d;
 mod plus;
 mod polar;
+mod position;
 mod power;
 mod premult;
 mod quantize;
@@ -94,6 +98,7 @@ mod ramptb;
 mod range;
 mod repeat;
 mod rgbtohsv;
+mod ridged2d;
 mod rotate2d;
 mod round;
 mod saturate;
@@ -118,6 +123,8 @@ mod tan;
 mod texcoord;
 mod trianglewave;
 mod unpremult;
+mod turbulence2d;
+mod valuenoise2d;
 mod warp;
 
 pub use page::{describe, page};
@@ -129,12 +136,19 @@ use mipless_graph::NodeSpec;
 static CATALOGUE: &[NodeDef] = &[
     // Input.
     constant::DEF,
+    position::DEF,
     texcoord::DEF,
     // Noise.
     fractal2d::DEF,
+    fractal3d::DEF,
+    multifractal2d::DEF,
     gabornoise2d::DEF,
     noise2d::DEF,
+    noise3d::DEF,
+    ridged2d::DEF,
     spectralnoise2d::DEF,
+    turbulence2d::DEF,
+    valuenoise2d::DEF,
     // Pattern.
     brick::DEF,
     checkerboard::DEF,

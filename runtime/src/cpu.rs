@@ -8,7 +8,7 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
-use mipless_codegen::cpu::{Evaluator, Footprint, Scratch};
+use mipless_codegen::cpu::{Evaluator, Footprint, Position, Scratch};
 use mipless_codegen::float::Float;
 use mipless_codegen::ir::{Interface, Program};
 use rayon::prelude::*;
@@ -141,6 +141,7 @@ struct Worker<'a, F> {
     renderer: &'a Renderer<F>,
     scratch: Scratch<F>,
     footprints: Vec<Footprint>,
+    positions: Vec<Position>,
     /// Where in the tile each of the footprints belongs.
     lanes: Vec<usize>,
     outputs: Vec<Vec<F>>,
@@ -152,6 +153,7 @@ impl<'a, F: Float> Worker<'a, F> {
             renderer,
             scratch: Scratch::new(),
             footprints: Vec::with_capacity(TILE),
+            positions: Vec::with_capacity(TILE),
             lanes: Vec::with_capacity(TILE),
             outputs: Vec::new(),
         }
@@ -160,10 +162,12 @@ impl<'a, F: Float> Worker<'a, F> {
     /// Evaluates the pixels of a tile that are not background.
     fn tile(&mut self, view: &View, size: Size, pixels: Range<usize>, results: &mut [&mut [F]]) {
         self.footprints.clear();
+        self.positions.clear();
         self.lanes.clear();
         for (lane, index) in pixels.enumerate() {
-            if let Some(footprint) = view.footprint(size, index) {
+            if let Some((footprint, position)) = view.pixel(size, index) {
                 self.footprints.push(footprint);
+                self.positions.push(position);
                 self.lanes.push(lane);
             }
         }
@@ -176,7 +180,8 @@ impl<'a, F: Float> Worker<'a, F> {
             ..
         } = self.renderer;
         let (scratch, outputs) = (&mut self.scratch, &mut self.outputs);
-        evaluator.evaluate_footprints(scratch, &self.footprints, parameters, outputs);
+        let (footprints, positions) = (&self.footprints, &self.positions);
+        evaluator.evaluate_surface(scratch, footprints, positions, parameters, outputs);
         for (result, output) in results.iter_mut().zip(outputs) {
             for (&lane, &value) in self.lanes.iter().zip(output.iter()) {
                 result[lane] = value;
@@ -219,6 +224,7 @@ mod tests {
             parameters: vec![port("scale", Type::Float, vec![1.0])],
             outputs: vec![port("uv", Type::Vector2, Vec::new())],
             moments: false,
+            position: false,
         };
         Program { module, interface }
     }

@@ -210,6 +210,7 @@ mod tests {
             parameters: Vec::new(),
             outputs: vec![port("height", Type::Float), port("tint", Type::Color3)],
             moments: true,
+            position: false,
         };
         let found = outputs(&interface);
         assert_eq!(

@@ -11,7 +11,7 @@
 
 use std::time::{Duration, Instant};
 
-use mipless_codegen::cpu::{Evaluator, Footprint, Scratch};
+use mipless_codegen::cpu::{Evaluator, Footprint, Position, Scratch};
 use mipless_codegen::ir::Program;
 use mipless_codegen::{Method, Options, PixelFilter};
 use rayon::prelude::*;
@@ -46,13 +46,16 @@ const PART: usize = 128;
 /// A method is timed about this long, unless two evaluations take longer.
 const TIMED: Duration = Duration::from_millis(30);
 
+/// Where a pixel lies in texture space and in space.
+type Pixel = (Footprint, Position);
+
 /// Pixels of a picture.
 #[derive(Clone, Debug)]
 pub struct Sample {
     /// Pixels all over the picture, in the order of its rows.
-    spread: Vec<Footprint>,
+    spread: Vec<Pixel>,
     /// Runs of neighbouring pixels.
-    runs: Vec<Footprint>,
+    runs: Vec<Pixel>,
 }
 
 impl Sample {
@@ -75,8 +78,8 @@ impl Sample {
         };
         spread.sort_unstable();
         spread.dedup();
-        let shown = |index: &usize| view.footprint(size, *index);
-        let spread: Vec<Footprint> = spread.iter().filter_map(shown).collect();
+        let shown = |index: &usize| view.pixel(size, *index);
+        let spread: Vec<Pixel> = spread.iter().filter_map(shown).collect();
 
         let covered: Vec<usize> = (0..size.height as usize)
             .map(|row| row * size.width as usize + size.width as usize / 2)
@@ -86,7 +89,7 @@ impl Sample {
             .filter_map(|run| covered.get((2 * run + 1) * covered.len() / (2 * RUNS)))
             .map(|&middle| middle.saturating_sub(RUN / 2));
         let runs = starts.flat_map(|start| start..all.min(start + RUN));
-        let runs = runs.filter_map(|index| view.footprint(size, index));
+        let runs = runs.filter_map(|index| view.pixel(size, index));
         Self {
             spread,
             runs: runs.collect(),
@@ -221,35 +224,46 @@ impl<'a> Subject<'a> {
 
 impl Ready<'_> {
     /// The output over some footprints, as an image of one row.
-    fn image(&self, footprints: &[Footprint]) -> Image {
+    fn image(&self, pixels: &[Pixel]) -> Image {
         let names = crate::image::channel_names(self.place.ty);
-        if footprints.is_empty() {
+        if pixels.is_empty() {
             return Image::new(Size::new(1, 1), names, vec![vec![0.0]; names.len()]);
         }
-        let part = |part: &[Footprint]| {
+        let part = |part: &[Pixel]| {
             let mut results = Vec::new();
             let mut scratch = Scratch::new();
             let evaluator = &self.evaluator;
-            evaluator.evaluate_footprints(&mut scratch, part, self.parameters, &mut results);
+            let (footprints, positions): (Vec<_>, Vec<_>) = part.iter().copied().unzip();
+            let parameters = self.parameters;
+            evaluator.evaluate_surface(
+                &mut scratch,
+                &footprints,
+                &positions,
+                parameters,
+                &mut results,
+            );
             results[self.place.mean.clone()].to_vec()
         };
-        let parts: Vec<Vec<Vec<f32>>> = footprints.par_chunks(PART).map(part).collect();
+        let parts: Vec<Vec<Vec<f32>>> = pixels.par_chunks(PART).map(part).collect();
         let channel = |c: usize| parts.iter().flat_map(|part| part[c].clone()).collect();
         let channels = (0..names.len()).map(channel).collect();
-        Image::new(Size::new(footprints.len() as u32, 1), names, channels)
+        Image::new(Size::new(pixels.len() as u32, 1), names, channels)
     }
 
     /// The shortest time of one footprint on this thread, in seconds: each run of pixels counts with
     /// the best of its times, so that what else the machine does meanwhile counts little.
-    fn seconds(&self, footprints: &[Footprint]) -> f64 {
+    fn seconds(&self, pixels: &[Pixel]) -> f64 {
+        let (footprints, positions): (Vec<_>, Vec<_>) = pixels.iter().copied().unzip();
         let (mut results, mut scratch) = (Vec::new(), Scratch::new());
         let mut best = vec![Duration::MAX; footprints.len().div_ceil(RUN)];
         let (mut total, mut rounds) = (Duration::ZERO, 0);
         while rounds < 2 || (total < 4 * TIMED && (rounds < 3 || total < TIMED)) {
-            for (best, run) in best.iter_mut().zip(footprints.chunks(RUN)) {
+            for (best, (run, positions)) in
+                (best.iter_mut()).zip(footprints.chunks(RUN).zip(positions.chunks(RUN)))
+            {
                 let begun = Instant::now();
-                let evaluator = &self.evaluator;
-                evaluator.evaluate_footprints(&mut scratch, run, self.parameters, &mut results);
+                let (evaluator, parameters) = (&self.evaluator, self.parameters);
+                evaluator.evaluate_surface(&mut scratch, run, positions, parameters, &mut results);
                 let taken = begun.elapsed();
                 *best = taken.min(*best);
                 total += taken;
@@ -364,7 +378,7 @@ mod tests {
         let size = Size::new(640, 360);
         let flat = Sample::new(&View::Flat(Flat::default()), size, 960);
         assert!(flat.pixels() > 950, "{}", flat.pixels());
-        let quarter = |f: &Footprint| f.uv[0] < 0.5 && f.uv[1] < 0.5;
+        let quarter = |(f, _): &Pixel| f.uv[0] < 0.5 && f.uv[1] < 0.5;
         let share = flat.spread.iter().filter(|f| quarter(f)).count();
         assert!((230..250).contains(&share), "{share}");
         assert_eq!(flat.runs.len(), RUNS * RUN);

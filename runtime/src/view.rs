@@ -15,7 +15,7 @@ pub use flat::Flat;
 pub use plane::Plane;
 pub use sphere::Sphere;
 
-use mipless_codegen::cpu::Footprint;
+use mipless_codegen::cpu::{Footprint, Position};
 
 use crate::image::Image;
 
@@ -62,6 +62,13 @@ pub struct Hit {
     pub du: [f64; 2],
     /// The change of uv for one pixel down.
     pub dv: [f64; 2],
+    /// The position in space: x to the right, y up and z towards the viewer of the plane and the
+    /// sphere; (u, v, 0) in the flat view.
+    pub position: [f64; 3],
+    /// The change of the position for one pixel to the right.
+    pub dx: [f64; 3],
+    /// The change of the position for one pixel down.
+    pub dy: [f64; 3],
     /// What the view multiplies a colour by (Lambert's cosine law), from 0 to 1; dimensionless.
     pub shade: f64,
     /// The share of the pixel that the surface covers, above 0 and at most 1.
@@ -90,6 +97,24 @@ impl Hit {
             .chain(&footprint.dv)
             .all(|x| x.is_finite());
         (fits && finite).then_some(footprint)
+    }
+}
+
+impl Hit {
+    /// The position in space, the whole part apart from its fraction.
+    ///
+    /// `None` where the whole part does not fit an i32, or where a number is not finite as f32.
+    pub fn space(&self) -> Option<Position> {
+        let cell = self.position.map(f64::floor);
+        let fits = (cell.iter()).all(|&c| c >= f64::from(i32::MIN) && c <= f64::from(i32::MAX));
+        let position = Position {
+            cell: cell.map(|c| c as i32),
+            xyz: [0, 1, 2].map(|i| (self.position[i] - cell[i]) as f32),
+            dx: self.dx.map(|x| x as f32),
+            dy: self.dy.map(|x| x as f32),
+        };
+        let finite = (position.dx.iter().chain(&position.dy)).all(|x| x.is_finite());
+        (fits && finite).then_some(position)
     }
 }
 
@@ -136,6 +161,12 @@ impl View {
     /// The footprint of the pixel at `index`, counted along the rows; `None` is the background.
     pub fn footprint(&self, size: Size, index: usize) -> Option<Footprint> {
         self.hit(size, size.centre(index))?.footprint()
+    }
+
+    /// The footprint of the pixel at `index` with its position in space; `None` is the background.
+    pub fn pixel(&self, size: Size, index: usize) -> Option<(Footprint, Position)> {
+        let hit = self.hit(size, size.centre(index))?;
+        Some((hit.footprint()?, hit.space()?))
     }
 
     /// The linear Rec. 709 colour of the background at `point`.
@@ -335,5 +366,52 @@ mod tests {
         assert!(at(26, 22) > 0.9, "the lit side {}", at(26, 22));
         assert!(at(44, 48) < 0.5, "the dark side {}", at(44, 48));
         assert_eq!(View::Flat(Flat::default()).present(&white), white);
+    }
+
+    #[test]
+    fn positions_in_space_have_the_derivatives_of_their_differences() {
+        let size = Size::new(160, 120);
+        for name in ["flat", "plane", "sphere"] {
+            let view = View::by_name(name).unwrap();
+            let mut checked = 0;
+            for index in (0..size.pixels()).step_by(331) {
+                let [x, y] = size.centre(index);
+                let h = 1e-4;
+                let around = [[x + h, y], [x - h, y], [x, y + h], [x, y - h]];
+                let hits =
+                    around.map(|point| view.hit(size, point).filter(|hit| hit.coverage == 1.0));
+                let (Some(hit), [Some(r), Some(l), Some(d), Some(u)]) =
+                    (view.hit(size, [x, y]), hits)
+                else {
+                    continue;
+                };
+                let length = hit
+                    .dx
+                    .iter()
+                    .chain(&hit.dy)
+                    .fold(0.0f64, |a, b| a.max(b.abs()));
+                for axis in 0..3 {
+                    let right = (r.position[axis] - l.position[axis]) / (2.0 * h);
+                    let down = (d.position[axis] - u.position[axis]) / (2.0 * h);
+                    assert!(
+                        (right - hit.dx[axis]).abs() <= 1e-5 * length,
+                        "{name}: {hit:?}"
+                    );
+                    assert!(
+                        (down - hit.dy[axis]).abs() <= 1e-5 * length,
+                        "{name}: {hit:?}"
+                    );
+                }
+                if name == "sphere" {
+                    let radius = hit.position.iter().map(|x| x * x).sum::<f64>();
+                    assert!((radius - 1.0).abs() < 1e-9, "{hit:?}");
+                }
+                let (footprint, position) = view.pixel(size, index).expect("both are finite");
+                assert_eq!(Some(footprint), view.footprint(size, index));
+                assert!(position.xyz.iter().all(|x| (0.0..=1.0).contains(x)));
+                checked += 1;
+            }
+            assert!(checked > 20, "{name}: {checked}");
+        }
     }
 }

@@ -92,6 +92,7 @@ fn program() -> Program {
             port("step", mipless_graph::Type::Vector2, &[]),
         ],
         moments: true,
+        position: false,
     };
     Program { module, interface }
 }

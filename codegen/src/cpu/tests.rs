@@ -391,6 +391,7 @@ fn a_program_reads_its_footprint_and_parameters_in_order() {
         parameters: Vec::new(),
         outputs: Vec::new(),
         moments: false,
+        position: false,
     };
     let program = Program { module, interface };
     let footprint = Footprint {

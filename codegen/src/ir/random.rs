@@ -153,6 +153,7 @@ pub(crate) fn program() -> impl Strategy<Value = Program> {
             parameters: Vec::new(),
             outputs: vec![output],
             moments: false,
+            position: false,
         };
         Program { module, interface }
     })

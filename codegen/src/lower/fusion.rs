@@ -250,6 +250,7 @@ fn function(
     let argument = Signal::certain(&mut b, x);
     let arguments = Arguments {
         footprint: [x; 8],
+        position: None,
         parameters: Vec::new(),
     };
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);

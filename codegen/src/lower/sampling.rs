@@ -1,6 +1,6 @@
 //! Methods that evaluate the graph several times in a pixel: a fold over one function of it.
 
-use super::entry::{finish, finite, footprint_function, graph_function, guarded};
+use super::entry::{finish, finite, footprint_function, graph_function, guarded, places};
 use super::{Arguments, Compiler, Options, PixelFilter};
 use crate::ir::{Builder, Module, Type as Scalar, Value};
 use crate::moments::Mode;
@@ -32,8 +32,10 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     let arguments = Arguments::declare(&mut b, compiler.graph);
     let [x, y] = offset(&mut b, compiler.options.filter, index, [shift_x, shift_y]);
     let mut all = arguments.all();
-    displace(&mut b, &mut all, [x, y]);
-    all[4..8].fill(b.f32(0.0));
+    displace(&mut b, compiler, &mut all, [x, y]);
+    for place in places(compiler.graph) {
+        all[place.changes()].fill(b.f32(0.0));
+    }
     let values = b.call(&point, &all);
     let number = b.float_u(index);
     let number = b.offset(number, 1.0);
@@ -56,7 +58,7 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
 
     let mut b = Builder::new(name, "The texture over a footprint.");
     let arguments = Arguments::declare(&mut b, compiler.graph);
-    let arguments = finite(&mut b, &arguments);
+    let arguments = finite(&mut b, compiler.graph, &arguments);
     let [cell_x, cell_y] = [b.cast_u(arguments[0]), b.cast_u(arguments[1])];
     let [u, v] = [b.bits(arguments[2]), b.bits(arguments[3])];
     let mut hash = b.u32(compiler.options.seed ^ 0x9e37_79b9);
@@ -92,14 +94,19 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
 
 /// Moves the position of a graph's arguments by (x, y) pixels. The offset's own integer part joins
 /// the cell, or the fraction would lose its detail.
-fn displace(b: &mut Builder, all: &mut [Value], pixels: [Value; 2]) {
-    for i in 0..2 {
-        let step = b.dot(&pixels, &[all[4 + i], all[6 + i]]);
-        let whole = b.floor(step);
-        let fraction = b.sub(step, whole);
-        let whole = b.trunc_i(whole);
-        all[i] = b.add_i(all[i], whole);
-        all[2 + i] = b.add(all[2 + i], fraction);
+fn displace(b: &mut Builder, compiler: &Compiler<'_>, all: &mut [Value], pixels: [Value; 2]) {
+    for place in places(compiler.graph) {
+        let right = place.changes().start;
+        for axis in 0..place.axes {
+            let changes = [all[right + axis], all[right + place.axes + axis]];
+            let step = b.dot(&pixels, &changes);
+            let whole = b.floor(step);
+            let fraction = b.sub(step, whole);
+            let whole = b.trunc_i(whole);
+            let (cell, rest) = (place.cell(axis), place.fraction(axis));
+            all[cell] = b.add_i(all[cell], whole);
+            all[rest] = b.add(all[rest], fraction);
+        }
     }
 }
 
@@ -213,9 +220,11 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
     let shift = b.scale(far, s);
     let (x, y) = (b.mul(node[0], shift), b.mul(node[1], shift));
     let mut all = arguments.all();
-    displace(&mut b, &mut all, [x, y]);
-    for value in &mut all[4..8] {
-        *value = b.mul(*value, near);
+    displace(&mut b, compiler, &mut all, [x, y]);
+    for place in places(compiler.graph) {
+        for value in &mut all[place.changes()] {
+            *value = b.mul(*value, near);
+        }
     }
     let values = b.call(&quad, &all);
     let mut spreads = Vec::new();
@@ -239,7 +248,7 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
 
     let mut b = Builder::new(name, "The texture over a footprint.");
     let arguments = Arguments::declare(&mut b, compiler.graph);
-    let arguments = finite(&mut b, &arguments);
+    let arguments = finite(&mut b, compiler.graph, &arguments);
     let share = match &size {
         None => b.f32(largest),
         Some(size) => {

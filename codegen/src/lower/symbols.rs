@@ -1,9 +1,9 @@
 //! Who reads what, and who carries which symbol.
 
-use super::Bundle;
+use super::{Bundle, Varying};
 use crate::ir::Builder;
 use crate::moments::{Signal, Symbol};
-use mipless_graph::{Graph, OutputType, Source};
+use mipless_graph::{Behaviour, Graph, Input, OutputType, Source, Type};
 use rustc_hash::FxHashMap;
 
 /// A signal carries at most this many symbols; the oldest go private first, so that a graph of
@@ -26,6 +26,18 @@ pub(super) fn live(graph: &Graph) -> Vec<u32> {
         }
     }
     uses
+}
+
+/// Whether a live node reads the surface's position in space: one whose class is the position, with
+/// three components, or one with a port of three that defaults to it.
+pub(super) fn reads_position(graph: &Graph) -> bool {
+    let live = live(graph);
+    graph.nodes.iter().zip(live).any(|(node, uses)| {
+        let is_position =
+            node.ty == Type::Vector3 && matches!((node.spec.class)(&Varying), Behaviour::Position);
+        let reads = |input: &Input| input.source == Source::Surface && input.ty == Type::Vector3;
+        uses > 0 && (is_position || node.inputs.iter().any(reads))
+    })
 }
 
 /// Whether something that follows each node combines different components of it, so that what they

@@ -13,6 +13,10 @@ pub struct Manifest {
     pub function: String,
     /// The entry point, if there is one.
     pub entry_point: Option<EntryPoint>,
+    /// Whether the function's second argument is the `Position` of the pixel in space: `cell` + `xyz`,
+    /// and its changes `dx` and `dy` to the next pixel on the right and below.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub position: bool,
     /// The members of the struct of parameters, in order.
     pub parameters: Vec<ManifestParameter>,
     /// The size of that struct in bytes.
@@ -111,6 +115,7 @@ impl Manifest {
         Self {
             function: shader.function.clone(),
             entry_point: shader.entry_point.clone(),
+            position: shader.position,
             parameters: parameters.collect(),
             parameters_size: shader.parameters_size,
             outputs: outputs.collect(),

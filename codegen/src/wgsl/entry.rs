@@ -6,7 +6,7 @@ use super::{
     Binding, BindingKind, Entry, EntryPoint, FOOTPRINTS_BINDING, OUTPUTS_BINDING, OutputField,
     PARAMETERS_BINDING, PIXELS_PER_ROW, ParameterField, Stage, TABLES_BINDING, WORKGROUP_SIZE,
 };
-use crate::ir::{FOOTPRINT, Program, Type};
+use crate::ir::{Program, Type};
 use std::fmt::Write;
 
 /// How the entry spells the eight scalars of the footprint.
@@ -19,6 +19,22 @@ const FOOTPRINT_PATHS: [&str; 8] = [
     "footprint.du.y",
     "footprint.dv.x",
     "footprint.dv.y",
+];
+
+/// How the entry spells the twelve scalars of the position.
+const POSITION_PATHS: [&str; 12] = [
+    "position.cell.x",
+    "position.cell.y",
+    "position.cell.z",
+    "position.xyz.x",
+    "position.xyz.y",
+    "position.xyz.z",
+    "position.dx.x",
+    "position.dx.y",
+    "position.dx.z",
+    "position.dy.x",
+    "position.dy.y",
+    "position.dy.z",
 ];
 
 const AXES: [&str; 4] = ["x", "y", "z", "w"];
@@ -45,6 +61,8 @@ pub(super) struct Face {
     pub(super) parameters_size: u32,
     /// The members of the struct of outputs.
     pub(super) outputs: Vec<OutputField>,
+    /// Whether the position in space is an argument.
+    pub(super) position: bool,
 }
 
 /// The WGSL type of `components` scalars.
@@ -85,7 +103,7 @@ pub(super) fn face(program: &Program) -> Face {
     let (entry, interface) = (program.module.entry(), &program.interface);
     let mut scope = Scope::default();
     let mut parameters = Vec::new();
-    let (mut first, mut offset) = (FOOTPRINT.len(), 0_u32);
+    let (mut first, mut offset) = (interface.place(), 0_u32);
     for port in &interface.parameters {
         let components = port.ty.components();
         assert!(components > 0, "the parameter {} has no number", port.name);
@@ -138,6 +156,7 @@ pub(super) fn face(program: &Program) -> Face {
         parameters,
         parameters_size: offset.next_multiple_of(16),
         outputs,
+        position: interface.position,
     }
 }
 
@@ -148,6 +167,13 @@ pub(super) fn push_structs(out: &mut String, names: &Names, face: &Face, tables:
          /// pixel on the right (du) and below (dv).\n\
          struct Footprint {\n    cell: vec2i,\n    uv: vec2f,\n    du: vec2f,\n    dv: vec2f,\n}\n\n",
     );
+    if face.position {
+        out.push_str(
+            "/// Where a pixel lies in space: its centre at cell + xyz, the change to the next pixel on the\n\
+             /// right (dx) and below (dy).\n\
+             struct Position {\n    cell: vec3i,\n    xyz: vec3f,\n    dx: vec3f,\n    dy: vec3f,\n}\n\n",
+        );
+    }
     let mut push = |name: &str, fields: &mut dyn Iterator<Item = (&str, String)>| {
         out.push_str("struct ");
         out.push_str(name);
@@ -181,6 +207,10 @@ pub(super) fn push_structs(out: &mut String, names: &Names, face: &Face, tables:
 pub(super) fn entry_text(program: &Program, names: &Names, face: &Face) -> EntryText {
     let mut signature = "footprint: Footprint".to_owned();
     let mut parameters: Vec<String> = FOOTPRINT_PATHS.map(str::to_owned).into();
+    if face.position {
+        signature.push_str(", position: Position");
+        parameters.extend(POSITION_PATHS.map(str::to_owned));
+    }
     if !face.parameters.is_empty() {
         write!(signature, ", parameters: {}", names.parameters).expect("a string takes all text");
     }
@@ -264,6 +294,9 @@ pub(super) fn push_entry_point(
         Entry::Fragment => Stage::Fragment,
         Entry::Compute => Stage::Compute,
     };
+    if entry == Entry::Compute && face.position {
+        out.push_str("struct Pixel {\n    footprint: Footprint,\n    position: Position,\n}\n\n");
+    }
     let footprints = (entry == Entry::Compute).then(|| {
         let kind = BindingKind::Footprints;
         declare(
@@ -272,7 +305,11 @@ pub(super) fn push_entry_point(
             kind,
             "footprints",
             "storage, read",
-            "array<Footprint>",
+            if face.position {
+                "array<Pixel>"
+            } else {
+                "array<Footprint>"
+            },
         )
     });
     let parameters = (!face.parameters.is_empty()).then(|| {
@@ -323,6 +360,11 @@ fn push_compute(
     face: &Face,
     [footprints, pixels, argument]: [&str; 3],
 ) {
+    let pixel = if face.position {
+        format!("{footprints}[index].footprint, {footprints}[index].position")
+    } else {
+        format!("{footprints}[index]")
+    };
     let scalars: usize = face.outputs.iter().map(|o| o.ty.components()).sum();
     write!(
         out,
@@ -330,7 +372,7 @@ fn push_compute(
          fn {name}(@builtin(global_invocation_id) id: vec3u) {{\n    \
              let index = id.x + id.y * {PIXELS_PER_ROW}u;\n    \
              if index >= arrayLength(&{footprints}) {{\n        return;\n    }}\n    \
-             let outputs = {}({footprints}[index]{argument});\n    \
+             let outputs = {}({pixel}{argument});\n    \
              let first = index * {scalars}u;\n",
         names.function
     )
@@ -391,11 +433,20 @@ fn push_fragment(
         out.push_str("}\n\n");
         (targets.clone(), format!("{targets}({})", colors.join(", ")))
     };
+    let (input, position, place) = if face.position {
+        (
+            ", @location(1) xyz: vec3f",
+            "    let position = Position(vec3i(0i, 0i, 0i), xyz, dpdx(xyz), dpdy(xyz));\n",
+            ", position",
+        )
+    } else {
+        ("", "", "")
+    };
     write!(
         out,
-        "@fragment\nfn {name}(@location(0) uv: vec2f) -> {result} {{\n    \
-             let footprint = Footprint(vec2i(0i, 0i), uv, dpdx(uv), dpdy(uv));\n    \
-             let outputs = {}(footprint{argument});\n    return {value};\n}}\n",
+        "@fragment\nfn {name}(@location(0) uv: vec2f{input}) -> {result} {{\n    \
+             let footprint = Footprint(vec2i(0i, 0i), uv, dpdx(uv), dpdy(uv));\n{position}    \
+             let outputs = {}(footprint{place}{argument});\n    return {value};\n}}\n",
         names.function
     )
     .expect("a string takes all text");

@@ -20,6 +20,7 @@ fn interface(name: &str, parameters: Vec<Port>, outputs: Vec<Port>) -> Interface
         parameters,
         outputs,
         moments: false,
+        position: false,
     }
 }
 
@@ -184,6 +185,7 @@ fn parameters_have_the_uniform_layout_and_outputs_may_be_of_any_type() {
     ];
     let interface = Interface {
         moments: true,
+        position: false,
         ..interface("float", parameters, outputs)
     };
     let program = Program { module, interface };

@@ -345,7 +345,7 @@ fn node(
                 },
                 None => Input {
                     source: Source::Surface,
-                    from: Type::Vector2,
+                    from: ty,
                     ty,
                 },
             }),

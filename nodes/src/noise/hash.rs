@@ -48,3 +48,47 @@ pub(crate) fn direction(b: &mut Builder, hash: Value) -> [Value; 2] {
         b.mul(y, bend)
     })
 }
+
+/// The words of a lattice column and of a lattice row, for [`corner`]: linear in the coordinate, so
+/// that neighbours differ by the factor.
+pub(crate) const COLUMN_FACTOR: u32 = 0x85eb_ca77;
+pub(crate) const ROW_FACTOR: u32 = 0x9e37_79b1;
+
+/// The hash of a lattice point from the words of its column and its row, in half the steps of
+/// [`Builder::scramble`]: only its leading bits are good, and they are what [`compass`] and
+/// [`signed`] read. Over 10⁶ points no correlation at any offset stands out.
+pub(crate) fn corner(b: &mut Builder, column: Value, row: Value) -> Value {
+    let word = b.xor_u(column, row);
+    let by = b.u32(15);
+    let shifted = b.shr_u(word, by);
+    let word = b.xor_u(word, shifted);
+    let factor = b.u32(0x846c_a68b);
+    b.mul_u(word, factor)
+}
+
+/// A number uniform in ±2³¹ from the leading bits of a hash.
+pub(crate) fn signed(b: &mut Builder, hash: Value) -> Value {
+    let signed = b.cast_i(hash);
+    b.float_i(signed)
+}
+
+/// The length of [`compass`], to within 6 %.
+pub(crate) const COMPASS_LENGTH: f32 = (1u64 << 60) as f32;
+
+/// E[gₓ²] = E[g_y²] of [`compass`] in squared lengths; its components are uncorrelated.
+pub(crate) const COMPASS_ENERGY: f32 = 8.0 / 15.0;
+
+/// A random direction from the leading bits of a hash: sine and cosine as parabolas of a half turn
+/// of 2³¹. It is not scaled, which would cost two operations a lattice point.
+pub(crate) fn compass(b: &mut Builder, hash: Value) -> [Value; 2] {
+    const HALF_TURN: f32 = (1u32 << 31) as f32;
+    let angle = signed(b, hash);
+    let magnitude = b.abs(angle);
+    let (quarter, half) = (b.f32(0.5 * HALF_TURN), b.f32(HALF_TURN));
+    let turned = b.sub(quarter, magnitude);
+    let turned_magnitude = b.abs(turned);
+    [(turned, turned_magnitude), (angle, magnitude)].map(|(t, magnitude)| {
+        let rest = b.sub(half, magnitude);
+        b.mul(t, rest)
+    })
+}

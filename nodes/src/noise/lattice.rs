@@ -5,7 +5,7 @@
 //! and B = [[cos θ, sin θ], [sin θ, −cos θ]]: k = uᵀBu − tr(BT⁻¹), M = Σ κ E k with
 //! κ = a³/(√π √det T). The unfiltered noise has variance 1 (over random lattices).
 
-mod address;
+pub(super) mod address;
 mod energy;
 mod filtered;
 mod point;
@@ -15,7 +15,7 @@ use super::field::{Field, Spread};
 use super::hash::NEXT_OCTAVE;
 use address::{Address, wrapped_cell};
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Type, Value};
+use mipless_codegen::ir::{Builder, FunctionRef, Type, Value};
 use mipless_codegen::moments::{Mode, Signal};
 
 /// a: the width of the kernel, in cells.
@@ -23,7 +23,7 @@ const WIDTH: f32 = 0.3854;
 
 /// The wavelength of the dominant detail, in cells: the spectrum k⁵ e^{−a²k²} has its peak at
 /// k = √2.5/a.
-const WAVELENGTH: f32 = std::f32::consts::TAU * WIDTH / 1.581_138_8;
+pub(super) const WAVELENGTH: f32 = std::f32::consts::TAU * WIDTH / 1.581_138_8;
 
 /// The most lattice rows that are summed; footprints that need more fade.
 const MOST_ROWS: f32 = 32.0;
@@ -33,6 +33,8 @@ const MOST_ROWS: f32 = 32.0;
 pub(crate) struct Octaves {
     /// How many, at least 1.
     pub(crate) count: u32,
+    /// By how much of its amplitude one more is there, below 1.
+    pub(crate) part: f32,
     /// By how much the frequency grows.
     pub(crate) lacunarity: f32,
     /// By how much the amplitude falls.
@@ -45,17 +47,89 @@ pub(crate) struct Octaves {
 
 impl Octaves {
     /// Whether the lattice repeats.
-    fn tiles(self) -> bool {
+    pub(super) fn tiles(self) -> bool {
         self.period > 0
     }
 
     /// The standard deviation of the sum.
     pub(crate) fn sd(self) -> f32 {
-        (0..self.count as i32)
+        let whole: f32 = (0..self.count as i32)
             .map(|k| self.diminish.powi(2 * k))
-            .sum::<f32>()
-            .sqrt()
+            .sum();
+        let part = self.part * self.diminish.powi(self.count as i32);
+        (whole + part * part).sqrt()
     }
+
+    /// The sum over octaves of a noise of variance 1; `octave` is the body of the fold over them.
+    pub(super) fn sum(
+        self,
+        lower: &mut Lower<'_>,
+        octave: &FunctionRef,
+        position: &[Signal],
+        captures: &[Value],
+    ) -> Field {
+        let mode = lower.mode();
+        let parts = parts(mode);
+        let sums = self.fold(lower, octave, position, parts, captures);
+        let zero = lower.b().f32(0.0);
+        let at = |i: usize| if i < parts { sums[i] } else { zero };
+        Field {
+            mean: at(0),
+            gradient: [at(1), at(2)],
+            hessian: [at(3), at(4), at(5)],
+            rest: if mode.spreads() { sums[parts] } else { zero },
+        }
+    }
+
+    /// The last state of the fold over octaves: the `parts` numbers of the field, the rest where the
+    /// mode spreads, and what goes from octave to octave.
+    pub(super) fn fold(
+        self,
+        lower: &mut Lower<'_>,
+        octave: &FunctionRef,
+        position: &[Signal],
+        parts: usize,
+        captures: &[Value],
+    ) -> Vec<Value> {
+        let mode = lower.mode();
+        let b = lower.b();
+        let mut init = vec![b.f32(0.0); parts + usize::from(mode.spreads())];
+        for axis in position {
+            // The lattice needs a cell and a fraction, whatever the position carries.
+            let (cell, fraction) = match axis.cell {
+                Some(cell) => (cell, axis.mean),
+                None => {
+                    let whole = b.floor(axis.mean);
+                    let fraction = b.sub(axis.mean, whole);
+                    (b.trunc_i(whole), fraction)
+                }
+            };
+            init.push(cell);
+            init.push(fraction);
+        }
+        let seed = b.u32(self.seed as u32);
+        let seed = b.scramble(seed);
+        let amplitude = init.len() + 1;
+        init.extend([b.f32(1.0), b.f32(1.0), seed]);
+        if self.tiles() {
+            init.push(b.f32(self.period as f32));
+        }
+        let count = b.u32(self.count);
+        let mut sums = b.fold(octave, count, &init, captures);
+        if self.part > 0.0 {
+            // The state is that of the next octave.
+            sums[amplitude] = b.scale(sums[amplitude], self.part);
+            let once = b.u32(1);
+            sums = b.fold(octave, once, &sums, captures);
+        }
+        sums
+    }
+}
+
+/// How many numbers a mode needs of a field: the mean, the gradient, the Hessian.
+pub(super) fn parts(mode: Mode) -> usize {
+    let derivatives = filtered::derivatives(mode);
+    (derivatives + 1) * (derivatives + 2) / 2
 }
 
 /// The filtered sum of octaves at a position in cells of the first octave; unit variance of the
@@ -63,11 +137,6 @@ impl Octaves {
 pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octaves) -> Field {
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position);
-    let b = lower.b();
-    let size = b.sqrt(spread.eigenvalues[0]);
-    // The first octave dominates: it decides what the footprint is to the source.
-    let wavelengths = lower.b().scale(size, 1.0 / WAVELENGTH);
-    lower.source_footprint(wavelengths);
     let Octaves {
         lacunarity,
         diminish,
@@ -82,28 +151,6 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
         _ => filtered::octave(module, mode, octaves),
     });
     let b = lower.b();
-    let derivatives = filtered::derivatives(mode);
-    let parts = (derivatives + 1) * (derivatives + 2) / 2;
-    let mut init = vec![b.f32(0.0); parts + usize::from(mode.spreads())];
-    for axis in position {
-        // The lattice needs a cell and a fraction, whatever the position carries.
-        let (cell, fraction) = match axis.cell {
-            Some(cell) => (cell, axis.mean),
-            None => {
-                let whole = b.floor(axis.mean);
-                let fraction = b.sub(axis.mean, whole);
-                (b.trunc_i(whole), fraction)
-            }
-        };
-        init.push(cell);
-        init.push(fraction);
-    }
-    let seed = b.u32(octaves.seed as u32);
-    let seed = b.scramble(seed);
-    init.extend([b.f32(1.0), b.f32(1.0), seed]);
-    if octaves.tiles() {
-        init.push(b.f32(octaves.period as f32));
-    }
     let mut captures = Vec::new();
     if mode != Mode::Point {
         captures.extend(spread.covariance);
@@ -112,32 +159,23 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
             .map(|s| b.scale(s, 1.0 / (WIDTH * WIDTH)));
         captures.extend([b.add(major, minor), b.mul(major, minor)]);
     }
-    let count = b.u32(octaves.count);
-    let sums = b.fold(&octave, count, &init, &captures);
-    let zero = b.f32(0.0);
-    let at = |i: usize| if i < parts { sums[i] } else { zero };
-    Field {
-        mean: at(0),
-        gradient: [at(1), at(2)],
-        hessian: [at(3), at(4), at(5)],
-        rest: if mode.spreads() { sums[parts] } else { zero },
-    }
+    octaves.sum(lower, &octave, position, &captures)
 }
 
 /// The part of an octave's state that goes from octave to octave: position, frequency, amplitude
 /// and seed.
-struct Octave {
-    cells: [Value; 2],
-    fractions: [Value; 2],
-    scale: Value,
-    amplitude: Value,
-    seed: Value,
+pub(super) struct Octave {
+    pub(super) cells: [Value; 2],
+    pub(super) fractions: [Value; 2],
+    pub(super) scale: Value,
+    pub(super) amplitude: Value,
+    pub(super) seed: Value,
     /// In cells of this octave.
-    period: Option<Value>,
+    pub(super) period: Option<Value>,
 }
 
 impl Octave {
-    fn declare(b: &mut Builder, octaves: Octaves) -> Self {
+    pub(super) fn declare(b: &mut Builder, octaves: Octaves) -> Self {
         let cell_x = b.param("cell_x", Type::I32);
         let x = b.param_f32("x");
         let cell_y = b.param("cell_y", Type::I32);
@@ -165,17 +203,18 @@ impl Octave {
     }
 
     /// The state of the next octave, as results.
-    fn advance(&self, b: &mut Builder, octaves: Octaves) {
+    pub(super) fn advance(&self, b: &mut Builder, octaves: Octaves) {
         let lacunarity = b.f32(octaves.lacunarity);
         // Octaves must not share lattice points, where the variance of all is largest.
-        let shift = b.f32(0.381_966);
+        let shift = 0.381_966 / octaves.lacunarity;
         for (i, name) in ["x", "y"].iter().enumerate() {
-            let start = Signal::certain(b, self.fractions[i]);
+            let shifted = b.offset(self.fractions[i], shift);
+            let start = Signal::certain(b, shifted);
             let start = Signal {
                 cell: Some(self.cells[i]),
                 ..start
             };
-            let next = start.scale(b, lacunarity).offset(b, shift);
+            let next = start.scale(b, lacunarity);
             b.result(
                 format!("cell_{name}"),
                 next.cell.expect("a position keeps its cell"),

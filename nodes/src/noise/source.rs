@@ -55,21 +55,40 @@ pub(crate) const SEED: PortSpec = PortSpec::new(
 /// Of what shape.
 pub(crate) const KERNEL: PortSpec = PortSpec::new(
     "kernel",
-    PortType::Choice(&["gaussian"]),
+    PortType::Choice(&["gaussian", "quintic"]),
     Default::Choice("gaussian"),
-    "The kernel at each lattice point; `gaussian` is filtered exactly for any footprint.",
+    "The kernel at each lattice point: `gaussian` is filtered exactly for any footprint, `quintic` \
+     is Perlin's gradient noise.",
 );
+
+/// Where in space.
+pub(crate) const POSITION: PortSpec = PortSpec::new(
+    "position",
+    PortType::Exactly(Type::Vector3),
+    Default::Surface,
+    "Where the noise is evaluated.",
+)
+.unit("units of space");
+
+/// position · frequency.
+pub(crate) fn place(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
+    scaled_by_frequency(lower, node, "position")
+}
 
 /// texcoord · frequency.
 pub(crate) fn position(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
+    scaled_by_frequency(lower, node, "texcoord")
+}
+
+fn scaled_by_frequency(lower: &mut Lower<'_>, node: &Node, port: &str) -> Vec<Signal> {
     let frequency = lower.signal(node, "frequency");
-    (lower.bundle(node, "texcoord").iter())
+    (lower.bundle(node, port).iter())
         .map(|axis| lower.algebra.product(axis, &frequency))
         .collect()
 }
 
 /// No noise leaves this many standard deviations in practice (once in 10⁶ points of a Gaussian).
-const EXTENT: f32 = 5.0;
+pub(crate) const EXTENT: f32 = 5.0;
 
 /// The field of this standard deviation as a signal: pivot + amplitude/4 · X.
 pub(crate) fn shaped(
@@ -79,13 +98,24 @@ pub(crate) fn shaped(
     sd: f32,
     position: &[Signal],
 ) -> Vec<Signal> {
+    let unit = field.at(lower, position);
+    scaled(lower, node, unit, (0.25, EXTENT * sd))
+}
+
+/// A noise X of variance 1 as the node's output: pivot + amplitude · `factor` · X, with |X| at most
+/// `extent`.
+pub(crate) fn scaled(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    unit: Signal,
+    (factor, extent): (f32, f32),
+) -> Vec<Signal> {
     let amplitude = lower.signal(node, "amplitude");
     let pivot = lower.signal(node, "pivot");
-    let extent = EXTENT * sd;
-    let unit = field.at(lower, position).with_range([-extent, extent]);
+    let unit = unit.with_range([-extent, extent]);
     let b = lower.b();
-    let quarter = b.f32(0.25);
-    let amplitude = amplitude.scale(b, quarter);
+    let factor = b.f32(factor);
+    let amplitude = amplitude.scale(b, factor);
     let scaled = lower.algebra.product(&unit, &amplitude);
     vec![scaled.add(lower.b(), &pivot)]
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use mipless_codegen::cpu::Footprint;
+use mipless_codegen::cpu::{Footprint, Position};
 use mipless_codegen::wgsl::workgroups;
 use rayon::prelude::*;
 
@@ -40,8 +40,17 @@ const SMALLEST_CHUNK: usize = 1 << 8;
 const SHORT: Duration = Duration::from_millis(60);
 const LONG: Duration = Duration::from_millis(400);
 
-/// The bytes of a packed footprint.
+/// The bytes of a packed footprint, and of one with its position in space.
 const FOOTPRINT: usize = 32;
+const PIXEL: usize = 96;
+
+fn pixel_bytes(pipeline: &Pipeline) -> usize {
+    if pipeline.shader().position {
+        PIXEL
+    } else {
+        FOOTPRINT
+    }
+}
 
 /// The buffers of one render.
 struct Buffers {
@@ -78,15 +87,15 @@ impl Gpu {
         let mut timing = Timing::default();
         let tally = Tally::new(job, size);
         let largest = self.largest_chunk(pipeline)?.min(size.pixels());
-        let buffers = self.checked(|| self.buffers(largest, pipeline.results.len()))?;
+        let buffers = self.checked(|| self.buffers(largest, pipeline))?;
         let mut start = 0;
         while start < size.pixels() {
             tally.proceed()?;
             let chunk = pipeline.chunk.load(Ordering::Relaxed).min(largest);
             let end = size.pixels().min(start + chunk);
-            let (pixels, footprints): (Vec<usize>, Vec<Footprint>) = (start..end)
+            let (pixels, footprints): (Vec<usize>, Vec<(Footprint, Position)>) = (start..end)
                 .into_par_iter()
-                .filter_map(|index| Some((index, view.footprint(size, index)?)))
+                .filter_map(|index| Some((index, view.pixel(size, index)?)))
                 .unzip();
             if !footprints.is_empty() {
                 let begun = Instant::now();
@@ -111,7 +120,7 @@ impl Gpu {
 
     /// How many footprints the limits of the device allow in a dispatch.
     fn largest_chunk(&self, pipeline: &Pipeline) -> Result<usize, GpuError> {
-        let bytes = FOOTPRINT.max(4 * pipeline.results.len()) as u64;
+        let bytes = pixel_bytes(pipeline).max(4 * pipeline.results.len()) as u64;
         let room = self
             .limits
             .max_storage_buffer_binding_size
@@ -124,9 +133,10 @@ impl Gpu {
         }
     }
 
-    fn buffers(&self, chunk: usize, results: usize) -> Buffers {
+    fn buffers(&self, chunk: usize, pipeline: &Pipeline) -> Buffers {
         use wgpu::BufferUsages as Usage;
-        let values = (chunk * results * 4) as u64;
+        let pixels = (chunk * pixel_bytes(pipeline)) as u64;
+        let values = (chunk * pipeline.results.len() * 4) as u64;
         let clock = self.timestamps.then(|| Clock {
             queries: self.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: None,
@@ -137,7 +147,7 @@ impl Gpu {
             readback: self.buffer(16, Usage::COPY_DST | Usage::MAP_READ),
         });
         Buffers {
-            footprints: self.buffer((chunk * FOOTPRINT) as u64, Usage::STORAGE | Usage::COPY_DST),
+            footprints: self.buffer(pixels, Usage::STORAGE | Usage::COPY_DST),
             results: self.buffer(values, Usage::STORAGE | Usage::COPY_SRC),
             readback: self.buffer(values, Usage::COPY_DST | Usage::MAP_READ),
             clock,
@@ -149,15 +159,21 @@ impl Gpu {
         &self,
         pipeline: &Pipeline,
         buffers: &Buffers,
-        footprints: &[Footprint],
+        footprints: &[(Footprint, Position)],
         timing: &mut Timing,
     ) -> Result<Vec<f32>, GpuError> {
         let values = (footprints.len() * pipeline.results.len() * 4) as u64;
-        let packed: Vec<[u32; 8]> = footprints.iter().map(packed).collect();
+        let mut words: Vec<u32> = Vec::with_capacity(footprints.len() * pixel_bytes(pipeline) / 4);
+        for (footprint, position) in footprints {
+            words.extend(packed(footprint));
+            if pipeline.shader().position {
+                words.extend(packed_position(position));
+            }
+        }
         // Uploaded before the clock starts.
         self.checked(|| {
             self.queue
-                .write_buffer(&buffers.footprints, 0, bytemuck::cast_slice(&packed));
+                .write_buffer(&buffers.footprints, 0, bytemuck::cast_slice(&words));
             self.queue.submit([]);
         })?;
         self.wait()?;
@@ -224,7 +240,10 @@ impl Gpu {
             })
         };
         let resources = [
-            part(&buffers.footprints, (footprints * FOOTPRINT) as u64),
+            part(
+                &buffers.footprints,
+                (footprints * pixel_bytes(pipeline)) as u64,
+            ),
             pipeline.parameters.as_entire_binding(),
             part(&buffers.results, values),
             pipeline.tables.as_entire_binding(),
@@ -294,4 +313,18 @@ fn packed(footprint: &Footprint) -> [u32; 8] {
     let [du_dx, dv_dx] = du.map(f32::to_bits);
     let [du_dy, dv_dy] = dv.map(f32::to_bits);
     [cell_x, cell_y, u, v, du_dx, dv_dx, du_dy, dv_dy]
+}
+
+/// Each vector of three in 16 bytes.
+fn packed_position(position: &Position) -> [u32; 16] {
+    let Position { cell, xyz, dx, dy } = position;
+    let [xyz, dx, dy] = [xyz, dx, dy].map(|vector| vector.map(f32::to_bits));
+    let mut words = [0; 16];
+    for (place, vector) in [cell.map(|c| c as u32), xyz, dx, dy]
+        .into_iter()
+        .enumerate()
+    {
+        words[4 * place..4 * place + 3].copy_from_slice(&vector);
+    }
+    words
 }

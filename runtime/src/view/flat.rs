@@ -29,6 +29,9 @@ impl Flat {
             uv: [x0 + x * step[0], y0 + y * step[1]],
             du: [step[0], 0.0],
             dv: [0.0, step[1]],
+            position: [x0 + x * step[0], y0 + y * step[1], 0.0],
+            dx: [step[0], 0.0, 0.0],
+            dy: [0.0, step[1], 0.0],
             shade: 1.0,
             coverage: 1.0,
         }

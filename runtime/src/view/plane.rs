@@ -64,10 +64,15 @@ impl Plane {
         let (u, v) = (ray.right * distance, -ray.forward * distance);
         // The derivative of a/b is (a′ − (a/b) b′)/b.
         let per_row = ray.down_per_row / ray.down;
+        let du = [ray.right_per_column * distance, 0.0];
+        let dv = [-u * per_row, -ray.forward_per_row * distance - v * per_row];
         Some(Hit {
             uv: [u, v],
-            du: [ray.right_per_column * distance, 0.0],
-            dv: [-u * per_row, -ray.forward_per_row * distance - v * per_row],
+            du,
+            dv,
+            position: [u, 0.0, v],
+            dx: [du[0], 0.0, du[1]],
+            dy: [dv[0], 0.0, dv[1]],
             shade: 1.0,
             coverage: 1.0,
         })

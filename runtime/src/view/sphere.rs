@@ -98,6 +98,9 @@ impl Sphere {
             uv: [p.x.atan2(p.z) * scale, -latitude * scale],
             du: change(right),
             dv: change(down),
+            position: p.to_array(),
+            dx: right.to_array().map(|c| c.clamp(-STEEPEST, STEEPEST)),
+            dy: down.to_array().map(|c| c.clamp(-STEEPEST, STEEPEST)),
             shade: self.ambient + (1.0 - self.ambient) * cosine,
             coverage,
         })

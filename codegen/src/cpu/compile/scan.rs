@@ -218,6 +218,14 @@ impl<'a> Scan<'a> {
 
     fn define_op(&mut self, value: Value, op: Op, operands: [Value; 3], position: usize) {
         let [a, b, _] = operands;
+        if matches!(op, Op::CastU | Op::CastI) && self.last_use[a.index()] == Some(position) {
+            let place = self.place(a);
+            if place.frame != Frame::Constants {
+                // The same bits in the same bank: the register changes its owner.
+                self.places[value.index()] = Some(place);
+                return;
+            }
+        }
         let (code, operands): (Code, Vec<Value>) = match op {
             Op::Add | Op::Sub if self.merged[a.index()] || self.merged[b.index()] => {
                 let (product, other) = if self.merged[a.index()] {

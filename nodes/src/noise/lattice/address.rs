@@ -5,7 +5,7 @@ use crate::noise::hash::{key, steps, walked};
 use mipless_codegen::ir::{Builder, Type, Value};
 
 /// `x`, integers up to a few periods away from 0, wrapped to [0, period).
-fn wrapped(b: &mut Builder, x: Value, period: Value) -> Value {
+pub(in crate::noise) fn wrapped(b: &mut Builder, x: Value, period: Value) -> Value {
     // In the middle between two integers the quotient's rounding does not matter.
     let middle = b.offset(x, 0.5);
     let turns = b.div(middle, period);

@@ -1,0 +1,49 @@
+//! The ports of noises that are made of octaves.
+
+use super::lattice::Octaves;
+use mipless_codegen::Lower;
+use mipless_graph::{Default, Node, PortSpec, PortType, Range, Type};
+
+/// How many.
+pub(crate) const OCTAVES: PortSpec = PortSpec::new(
+    "octaves",
+    PortType::Exactly(Type::Float),
+    Default::Float(3.0),
+    "How many noises are summed; a fraction is the share of the last one's amplitude.",
+)
+.uniform()
+.range(Range::hard(1.0, 16.0).with_soft(1.0, 8.0))
+.unit("count");
+
+/// How much finer each is.
+pub(crate) const LACUNARITY: PortSpec = PortSpec::new(
+    "lacunarity",
+    PortType::Exactly(Type::Float),
+    Default::Float(2.0),
+    "The ratio of the frequencies of neighbouring octaves.",
+)
+.uniform()
+.range(Range::hard(1.0, 8.0).with_soft(1.5, 3.0));
+
+/// How much weaker each is.
+pub(crate) const DIMINISH: PortSpec = PortSpec::new(
+    "diminish",
+    PortType::Exactly(Type::Float),
+    Default::Float(0.5),
+    "The ratio of the amplitudes of neighbouring octaves.",
+)
+.uniform()
+.range(Range::hard(0.0, 2.0).with_soft(0.0, 1.0));
+
+/// The octaves that a node's ports ask for.
+pub(crate) fn octaves(lower: &Lower<'_>, node: &Node) -> Octaves {
+    let octaves = lower.float(node, "octaves");
+    Octaves {
+        count: octaves as u32,
+        part: octaves.fract(),
+        lacunarity: lower.float(node, "lacunarity"),
+        diminish: lower.float(node, "diminish"),
+        seed: lower.integer(node, "seed"),
+        period: 0,
+    }
+}

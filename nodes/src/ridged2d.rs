@@ -1,0 +1,127 @@
+//! `ridged2d`: Musgrave's ridged multifractal.
+
+use crate::noise::layers::{layers, published};
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES};
+use crate::noise::ridge::{Ridge, couple, settle};
+use crate::noise::source::{FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position};
+use mipless_codegen::NodeDef;
+use mipless_codegen::moments::{Piecewise, Signal};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+};
+
+/// max |CDF − Φ| of three octaves with the default ports.
+const DEVIATION: f32 = 0.07;
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "ridged2d",
+    aliases: &[
+        "ridged",
+        "ridgedmulti",
+        "ridged multi",
+        "ridged multifractal",
+    ],
+    category: Category::Noise,
+    summary: "Octaves with sharp ridges, each shown where the one before is high.",
+    doc: Doc {
+        computes: "pivot + amplitude · Σ_k diminishᵏ s_k, with s_0 = r_0, s_k = r_k · clamp(gain · \
+            s_{k−1}, 0, 1) and the ridges r_k = (offset − |N_k|/4)² of independent noises of \
+            `noise2d` of variance 1 at lacunarityᵏ · frequency · texcoord; the last one of a \
+            fractional count has that share of its amplitude.",
+        statistics: "The first octave has mean (offset − 0.1995)² + 0.0227; with the default ports all \
+            three have mean 1.12 and standard deviation 0.31, max |CDF − Φ| is 0.07. The dominant \
+            wavelength is half of the noise’s. Each octave is a filtered noise put through the \
+            ridge, (offset − |x|/4)², in closed form; its weight is the clamp of the one before, \
+            with the covariance between them, and products are Isserlis’s.",
+        accuracy: "After a smooth step or a step, the mean is within 0.043 and 0.071 (RMS over \
+            footprints from 0.03 to 2 wavelengths, 3 octaves), before them within 0.043. The mean of \
+            a large footprint is within 0.009, its standard deviation within 0.015: the weights \
+            are not Gaussian. Held by `nodes/tests/fractal.rs`.",
+        references: "Musgrave, in Ebert et al. 2003, *Texturing and Modeling*, ch. 16 \
+            (RidgedMultifractal); Leone, Nelson & Nottingham 1961, *The Folded Normal \
+            Distribution*; Isserlis 1918.",
+    },
+    inputs: &[
+        TEXCOORD,
+        FREQUENCY,
+        PortSpec::new(
+            "amplitude",
+            PortType::Exactly(Type::Float),
+            Default::Float(1.0),
+            "By what the sum of the octaves is multiplied.",
+        )
+        .range(Range::soft(0.0, 4.0)),
+        PIVOT,
+        SEED,
+        KERNEL,
+        OCTAVES,
+        LACUNARITY,
+        DIMINISH,
+        PortSpec::new(
+            "offset",
+            PortType::Exactly(Type::Float),
+            Default::Float(1.0),
+            "The height of a ridge before it is squared; the noise under it has a standard \
+             deviation of 0.25.",
+        )
+        .range(Range::soft(0.0, 2.0)),
+        PortSpec::new(
+            "gain",
+            PortType::Exactly(Type::Float),
+            Default::Float(2.0),
+            "How much of an octave is shown where the one before is high.",
+        )
+        .range(Range::soft(0.0, 8.0)),
+    ],
+    output: OutputType::Exactly(Type::Float),
+    class: |_| Behaviour::Gaussian {
+        deviation: DEVIATION,
+    },
+    example: r#"{ "version": 1, "name": "ridges",
+        "nodes": { "ridged2d": { "type": "ridged2d", "inputs": { "frequency": 4, "octaves": 4, "amplitude": 0.7 } } },
+        "outputs": { "out": { "node": "ridged2d" } } }"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef {
+    spec: &SPEC,
+    lower: |lower, node| {
+        let position = position(lower, node);
+        let layers = layers(lower, node, position);
+        let offset = lower.number(node, "offset");
+        let gain = lower.number(node, "gain");
+        let b = lower.b();
+        let (zero, one) = (b.f32(0.0), b.f32(1.0));
+        let ridge = Ridge { offset };
+        let weight = Piecewise::clamp(b, zero, one);
+        // What an octave shares with the one before is carried by symbols, whoever reads the node.
+        let shares = std::mem::replace(&mut lower.algebra.shares, true);
+        let first = lower.algebra.next_symbol();
+        let mut sum = Signal::constant(lower.b(), 0.0);
+        let mut before: Option<Signal> = None;
+        for layer in &layers {
+            let mut octave = lower.algebra.transfer(&layer.noise, &ridge);
+            if let Some(before) = before {
+                let strength = before.scale(lower.b(), gain);
+                let weight = lower.algebra.transfer(&strength, &weight);
+                octave = lower.algebra.product(&octave, &weight);
+            }
+            octave = published(lower, octave);
+            let b = lower.b();
+            let amplitude = b.f32(layer.amplitude * layer.share);
+            let part = octave.scale(b, amplitude);
+            sum = sum.add(b, &part);
+            if lower.mode().spreads() {
+                couple(lower, first, &mut sum, &mut octave);
+            }
+            before = Some(octave);
+        }
+        lower.algebra.shares = shares;
+        settle(lower.b(), first, &mut sum);
+        let sum = published(lower, sum);
+        let amplitude = lower.signal(node, "amplitude");
+        let pivot = lower.signal(node, "pivot");
+        let scaled = lower.algebra.product(&sum, &amplitude);
+        vec![scaled.add(lower.b(), &pivot)]
+    },
+};
