@@ -16,9 +16,9 @@ mod add;
 mod asin;
 mod atan;
 mod bias;
+mod brick;
 mod burn;
 mod ceil;
-mod brick;
 mod checkerboard;
 mod clamp;
 mod colormap2d;
@@ -36,13 +36,15 @@ mod extract;
 mod floor;
 mod fract;
 mod fractal2d;
+mod gabornoise2d;
 mod gain;
+mod grid;
 mod hardlight;
 mod ifequal;
 mod ifgreater;
 mod ifgreatereq;
-mod gabornoise2d;
 mod invert;
+mod kaleidoscope;
 mod levels;
 mod lighten;
 mod linearlight;
@@ -51,19 +53,18 @@ mod luminance;
 mod max;
 mod min;
 mod minus;
-mod grid;
-mod kaleidoscope;
 mod mirror;
 mod mix;
 mod modulo;
 mod multiply;
 mod noise2d;
 mod overlay;
+mod phasornoise2d;
 mod place2d;
 mod plus;
+mod polar;
 mod power;
 mod quantize;
-mod polar;
 mod ramp4;
 mod ramplr;
 mod ramptb;
@@ -79,18 +80,18 @@ mod smoothmin;
 mod smoothstep;
 mod softlight;
 mod spectralnoise2d;
+mod splitlr;
+mod splittb;
 mod sqrt;
 mod squarewave;
 mod step;
 mod stripes;
 mod subtract;
+mod swirl;
 mod switch;
 mod tan;
 mod texcoord;
 mod trianglewave;
-mod splitlr;
-mod splittb;
-mod swirl;
 mod warp;
 
 pub use page::{describe, page};
@@ -107,6 +108,7 @@ static CATALOGUE: &[NodeDef] = &[
     fractal2d::DEF,
     gabornoise2d::DEF,
     noise2d::DEF,
+    phasornoise2d::DEF,
     spectralnoise2d::DEF,
     // Pattern.
     brick::DEF,

@@ -6,5 +6,6 @@ pub(crate) mod gabor;
 pub(crate) mod hash;
 pub(crate) mod lattice;
 pub(crate) mod period;
+pub(crate) mod phasor;
 pub(crate) mod source;
 pub(crate) mod spectral;

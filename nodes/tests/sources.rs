@@ -3,5 +3,7 @@
 
 #[path = "sources/gabor.rs"]
 mod gabor;
+#[path = "sources/phasor.rs"]
+mod phasor;
 #[path = "sources/truth.rs"]
 mod truth;
