@@ -19,6 +19,7 @@ mod bias;
 mod brick;
 mod burn;
 mod ceil;
+mod cellnoise2d;
 mod checkerboard;
 mod clamp;
 mod colormap2d;
@@ -93,6 +94,7 @@ mod tan;
 mod texcoord;
 mod trianglewave;
 mod warp;
+mod whitenoise2d;
 
 pub use page::{describe, page};
 
@@ -105,11 +107,13 @@ static CATALOGUE: &[NodeDef] = &[
     constant::DEF,
     texcoord::DEF,
     // Noise.
+    cellnoise2d::DEF,
     fractal2d::DEF,
     gabornoise2d::DEF,
     noise2d::DEF,
     phasornoise2d::DEF,
     spectralnoise2d::DEF,
+    whitenoise2d::DEF,
     // Pattern.
     brick::DEF,
     checkerboard::DEF,

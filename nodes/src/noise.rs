@@ -1,6 +1,7 @@
 //! What the noises share: hashing, the lattice kernel, and the field that a filtered source gives.
 
 pub(crate) mod bend;
+pub(crate) mod cell;
 pub(crate) mod field;
 pub(crate) mod gabor;
 pub(crate) mod hash;

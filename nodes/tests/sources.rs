@@ -1,6 +1,8 @@
 //! The sources of detail against dense numerical truth, and their distributions against what their
 //! pages state.
 
+#[path = "sources/cell.rs"]
+mod cell;
 #[path = "sources/gabor.rs"]
 mod gabor;
 #[path = "sources/phasor.rs"]
