@@ -95,6 +95,7 @@ mod texcoord;
 mod trianglewave;
 mod warp;
 mod whitenoise2d;
+mod worleynoise2d;
 
 pub use page::{describe, page};
 
@@ -114,6 +115,7 @@ static CATALOGUE: &[NodeDef] = &[
     phasornoise2d::DEF,
     spectralnoise2d::DEF,
     whitenoise2d::DEF,
+    worleynoise2d::DEF,
     // Pattern.
     brick::DEF,
     checkerboard::DEF,

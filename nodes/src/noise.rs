@@ -10,3 +10,4 @@ pub(crate) mod period;
 pub(crate) mod phasor;
 pub(crate) mod source;
 pub(crate) mod spectral;
+pub(crate) mod worley;

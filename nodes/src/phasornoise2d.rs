@@ -33,12 +33,12 @@ static SPEC: NodeSpec = NodeSpec {
             amplitude/2 times √½ (sine), 1/√3 (triangle, sawtooth) or 1 (square). It is not Gaussian: \
             max |CDF − Φ| is 0.098 (sine), 0.058 (triangle, sawtooth) or 0.342 (square). The \
             spectrum has the band around `frequency`, and its harmonics by the profile.",
-        accuracy: "Half the error is that a phase around a zero of the field is not Gaussian. For \
-            half an octave to one octave of one direction, the filtered mean is within 0.08, 0.06, 0.11, \
-            0.18 and 0.09 standard deviations of the noise (root mean square) at footprints of 0.02, \
-            0.05, 0.1, 0.2 and 0.5 wavelengths, and the local standard deviation within 0.08, 0.09, \
-            0.12, 0.09 and 0.04 of the true one in the mean. Held by `nodes/tests/sources.rs`; all \
-            sizes in `tests/benches/sources.rs`. `split` narrows both.",
+        accuracy: "The phase around a zero of the field is not Gaussian. For one octave and one \
+            direction the filtered mean is within 0.08, 0.06, 0.11, 0.18 and 0.09 standard deviations \
+            of the noise (root mean square) at footprints of 0.02, 0.05, 0.1, 0.2 and 0.5 wavelengths, \
+            and the local standard deviation within 0.08, 0.09, 0.12, 0.09 and 0.04 of the true one in \
+            the mean; at 8:1 of the same area the mean is within 0.19. Held by \
+            `nodes/tests/sources.rs`; all sizes in `tests/benches/sources.rs`.",
         references: "Tricard, Efremov, Zanni, Neyret, Martínez & Lefebvre 2019, *Procedural phasor \
             noise*, eq. 3–6; Abramowitz & Stegun 11.4.28 (the phase of a noncentral Gaussian); \
             Bruneton & Neyret 2012 §2.2; Bussgang 1952 for the profile.",

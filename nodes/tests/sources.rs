@@ -9,3 +9,5 @@ mod gabor;
 mod phasor;
 #[path = "sources/truth.rs"]
 mod truth;
+#[path = "sources/worley.rs"]
+mod worley;

@@ -9,6 +9,8 @@
 //! A family is one file in `sources/`: it fills a [`table::Source`] for each of its nodes and adds
 //! itself to [`FAMILIES`].
 
+#[path = "sources/cells.rs"]
+mod cells;
 #[path = "sources/cost.rs"]
 mod cost;
 #[path = "sources/footprint.rs"]
@@ -25,7 +27,8 @@ mod table;
 mod truth;
 
 /// The families, by the names that the command line takes.
-const FAMILIES: [(&str, fn()); 3] = [
+const FAMILIES: [(&str, fn()); 4] = [
+    ("cells", cells::run),
     ("spectral", spectral::run),
     ("gabor", gabor::run),
     ("phasor", phasor::run),
