@@ -314,7 +314,10 @@ impl<'a> Lower<'a> {
         for (index, node) in graph.nodes.iter().enumerate().rev() {
             let live = self.compiler.live[index] > 0;
             // Whatever its inputs are, a source is Gaussian by itself.
-            let source = matches!((node.spec.class)(&Varying), Behaviour::Gaussian { .. });
+            let source = matches!(
+                (node.spec.class)(&Varying),
+                Behaviour::Gaussian { .. } | Behaviour::Random { .. }
+            );
             if uses[index] == 0 && !(live && source) {
                 continue;
             }

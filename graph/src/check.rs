@@ -220,7 +220,10 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
 
 /// One number where a position is wanted stands for both coordinates, which is seldom meant.
 fn diagonal_position(graph: &Graph, node: &Node, behaviour: Behaviour) -> Option<Diagnostic> {
-    if !matches!(behaviour, Behaviour::Gaussian { .. } | Behaviour::Pattern) {
+    if !matches!(
+        behaviour,
+        Behaviour::Gaussian { .. } | Behaviour::Random { .. } | Behaviour::Pattern
+    ) {
         return None;
     }
     let ports = node.spec.inputs.iter().zip(&node.inputs);

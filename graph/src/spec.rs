@@ -230,6 +230,11 @@ pub enum Behaviour {
         /// Dimensionless.
         deviation: f32,
     },
+    /// A noise of position that is not Gaussian: only its mean and covariance are known.
+    Random {
+        /// max |CDF − Φ|, dimensionless.
+        deviation: f32,
+    },
     /// A linear combination of its varying inputs.
     Linear,
     /// A product of varying inputs.

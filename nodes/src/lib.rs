@@ -25,6 +25,7 @@ mod brick;
 mod brightness;
 mod burn;
 mod ceil;
+mod cellnoise2d;
 mod checkerboard;
 mod clamp;
 mod colorcorrect;
@@ -60,7 +61,6 @@ mod hsvtorgb;
 mod ifequal;
 mod ifgreater;
 mod ifgreatereq;
-mod r#in;
 mod invert;
 mod kaleidoscope;
 mod levels;
@@ -80,11 +80,12 @@ mod modulo;
 mod multifractal2d;
 mod multiply;
 mod noise2d;
+mod noise3d;
 mod normalize;
 mod out;
 mod over;
-mod noise3d;
 mod overlay;
+mod phasornoise2d;
 mod place2d;
 mod plus;
 mod polar;
@@ -122,10 +123,12 @@ mod switch;
 mod tan;
 mod texcoord;
 mod trianglewave;
-mod unpremult;
 mod turbulence2d;
+mod unpremult;
 mod valuenoise2d;
 mod warp;
+mod whitenoise2d;
+mod worleynoise2d;
 
 pub use page::{describe, page};
 
@@ -139,16 +142,20 @@ static CATALOGUE: &[NodeDef] = &[
     position::DEF,
     texcoord::DEF,
     // Noise.
+    cellnoise2d::DEF,
     fractal2d::DEF,
     fractal3d::DEF,
-    multifractal2d::DEF,
     gabornoise2d::DEF,
+    multifractal2d::DEF,
     noise2d::DEF,
     noise3d::DEF,
+    phasornoise2d::DEF,
     ridged2d::DEF,
     spectralnoise2d::DEF,
     turbulence2d::DEF,
     valuenoise2d::DEF,
+    whitenoise2d::DEF,
+    worleynoise2d::DEF,
     // Pattern.
     brick::DEF,
     checkerboard::DEF,
@@ -230,13 +237,13 @@ static CATALOGUE: &[NodeDef] = &[
     disjointover::DEF,
     hsvadjust::DEF,
     hsvtorgb::DEF,
-    r#in::DEF,
     luminance::DEF,
     mask::DEF,
     matte::DEF,
     out::DEF,
     over::DEF,
     premult::DEF,
+    r#in::DEF,
     rgbtohsv::DEF,
     saturate::DEF,
     unpremult::DEF,

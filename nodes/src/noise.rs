@@ -1,6 +1,7 @@
 //! What the noises share: hashing, the lattice kernel, and the field that a filtered source gives.
 
 pub(crate) mod bend;
+pub(crate) mod cell;
 pub(crate) mod field;
 pub(crate) mod gabor;
 pub(crate) mod hash;
@@ -10,8 +11,12 @@ pub(crate) mod layers;
 pub(crate) mod octaves;
 pub(crate) mod period;
 pub(crate) mod perlin;
+pub(crate) mod phasor;
 mod remainder;
 pub(crate) mod ridge;
 pub(crate) mod source;
+pub(crate) mod source;
+pub(crate) mod spectral;
 pub(crate) mod spectral;
 pub(crate) mod volume;
+pub(crate) mod worley;

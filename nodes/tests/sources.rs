@@ -1,7 +1,13 @@
 //! The sources of detail against dense numerical truth, and their distributions against what their
 //! pages state.
 
+#[path = "sources/cell.rs"]
+mod cell;
 #[path = "sources/gabor.rs"]
 mod gabor;
+#[path = "sources/phasor.rs"]
+mod phasor;
 #[path = "sources/truth.rs"]
 mod truth;
+#[path = "sources/worley.rs"]
+mod worley;

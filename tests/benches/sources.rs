@@ -9,12 +9,16 @@
 //! A family is one file in `sources/`: it fills a [`table::Source`] for each of its nodes and adds
 //! itself to [`FAMILIES`].
 
+#[path = "sources/cells.rs"]
+mod cells;
 #[path = "sources/cost.rs"]
 mod cost;
 #[path = "sources/footprint.rs"]
 mod footprint;
 #[path = "sources/gabor.rs"]
 mod gabor;
+#[path = "sources/phasor.rs"]
+mod phasor;
 #[path = "sources/spectral.rs"]
 mod spectral;
 #[path = "sources/table.rs"]
@@ -23,7 +27,12 @@ mod table;
 mod truth;
 
 /// The families, by the names that the command line takes.
-const FAMILIES: [(&str, fn()); 2] = [("spectral", spectral::run), ("gabor", gabor::run)];
+const FAMILIES: [(&str, fn()); 4] = [
+    ("cells", cells::run),
+    ("spectral", spectral::run),
+    ("gabor", gabor::run),
+    ("phasor", phasor::run),
+];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -141,6 +141,7 @@ pub(super) enum Reason {
     Position,
     Noise,
     WarpedNoise(&'static str),
+    Random,
     Pattern,
     WarpedPattern(&'static str),
     LinearOfGaussians,
@@ -175,6 +176,13 @@ impl Reason {
                 "`{name}` is a noise at a position (`{port}`) that {} displaces at random",
                 from()
             ),
+            Self::Random => match signal.class {
+                Class::Moments { deviation } => format!(
+                    "`{name}` is a noise that is not Gaussian (its distribution is {deviation} away): \
+                     only its mean and covariance are known"
+                ),
+                _ => format!("`{name}` is a noise that is not Gaussian"),
+            },
             Self::Pattern => format!("`{name}` is a pattern of position, filtered in closed form"),
             Self::WarpedPattern(port) => format!(
                 "`{name}` is a pattern at a position (`{port}`) that {} displaces at random",
@@ -268,10 +276,15 @@ pub(super) fn signal(
     let own = match behaviour {
         Behaviour::Constant => None,
         Behaviour::Position => Some(Sources::surface()),
-        Behaviour::Gaussian { .. } | Behaviour::Unknown(_) => Some(Sources::of(id)),
+        Behaviour::Gaussian { .. } | Behaviour::Random { .. } | Behaviour::Unknown(_) => {
+            Some(Sources::of(id))
+        }
         _ => None,
     };
-    let noise = matches!(behaviour, Behaviour::Gaussian { .. });
+    let noise = matches!(
+        behaviour,
+        Behaviour::Gaussian { .. } | Behaviour::Random { .. }
+    );
     let mut sources = own.unwrap_or_default();
     for input in incoming {
         // A noise is a source of its own: that it is read at the position is understood.
@@ -324,6 +337,13 @@ fn outcome(id: NodeId, node: &Node, behaviour: Behaviour, incoming: &[Incoming])
                     .error(together(by.error, WARPED))
             }
         },
+        Behaviour::Random { deviation } => {
+            let outcome = Outcome::new(Class::Moments { deviation }, Reason::Random);
+            match displaced(incoming) {
+                None => outcome,
+                Some(by) => outcome.by(by.node).error(together(by.error, WARPED)),
+            }
+        }
         Behaviour::Pattern => match displaced(incoming) {
             None => Outcome::new(Class::Function { gaussians: 0 }, Reason::Pattern),
             Some(by) => {

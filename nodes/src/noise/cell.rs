@@ -1,0 +1,350 @@
+//! One independent number of [0, 1) in every cell of a lattice, filtered by a Gaussian footprint.
+//!
+//! The weight of a cell is the probability of its box. Within a row of cells the other coordinate is
+//! taken for Gaussian, with the mean and the variance that it has given the row: for footprints
+//! whose axes are the lattice's that is exact, for others what errs is that a truncated normal's
+//! shear is not normal.
+
+use super::field::{Field, Spread};
+use super::period::wrapped;
+use mipless_codegen::Lower;
+use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::moments::{Mode, Normal, Signal};
+
+/// The variance of a number of [0, 1).
+pub(crate) const VARIANCE: f32 = 1.0 / 12.0;
+
+/// How far a window reaches, in standard deviations; weights are normalised to their sum.
+const REACH: f32 = 2.8;
+
+/// The most rows or columns of a window; footprints that need more fade.
+const MOST: f32 = 24.0;
+
+/// The number of a cell, in [0, 1), and its hash.
+pub(crate) fn number(
+    b: &mut Builder,
+    column: Value,
+    row: Value,
+    seed: Value,
+    period: i32,
+) -> (Value, Value) {
+    let column = wrapped(b, column, period);
+    let row = wrapped(b, row, period);
+    let (column, row) = (b.cast_u(column), b.cast_u(row));
+    let factor = b.u32(0x9e37_79b1);
+    let row = b.mul_u(row, factor);
+    let row = b.add_u(row, seed);
+    let hash = b.xor_u(column, row);
+    let hash = b.scramble(hash);
+    let by = b.u32(8);
+    let leading = b.shr_u(hash, by);
+    let number = b.float_u(leading);
+    (b.scale(number, 1.0 / (1u32 << 24) as f32), hash)
+}
+
+/// The scrambled seed of a lattice; `salt` separates kinds of noise.
+pub(crate) fn lattice_seed(b: &mut Builder, seed: i32, salt: u32) -> Value {
+    let seed = b.u32(seed as u32 ^ salt);
+    b.scramble(seed)
+}
+
+/// The cell and the fraction of a coordinate.
+pub(crate) fn split(b: &mut Builder, axis: &Signal) -> [Value; 2] {
+    match axis.cell {
+        Some(cell) => [cell, axis.mean],
+        None => {
+            let whole = b.floor(axis.mean);
+            let fraction = b.sub(axis.mean, whole);
+            [b.trunc_i(whole), fraction]
+        }
+    }
+}
+
+/// The probability that two independent places of a Gaussian spread along one axis lie in one cell:
+/// E[max(1 − |t|, 0)] of their difference t, of standard deviation τ = σ√2.
+pub(crate) fn coincidence(b: &mut Builder, variance: Value) -> Value {
+    let twice = b.add(variance, variance);
+    let raised = b.offset(twice, 1e-12);
+    let sd = b.sqrt(raised);
+    let one = b.f32(1.0);
+    let inverse = b.div(one, sd);
+    let n = Normal::at(b, one, inverse);
+    let inside = b.offset(n.below, -0.5);
+    let inside = b.add(inside, inside);
+    // 2τ(φ(0) − φ(1/τ)).
+    let density = b.neg(n.density);
+    let density = b.offset(density, 0.398_942_3);
+    let lost = b.mul(density, sd);
+    let lost = b.add(lost, lost);
+    let share = b.sub(inside, lost);
+    b.clamp(share, 0.0, 1.0)
+}
+
+/// The filtered cells at a position; the mean lies around ½.
+pub(crate) fn filtered(
+    lower: &mut Lower<'_>,
+    position: &[Signal],
+    seed: i32,
+    period: i32,
+) -> Field {
+    let mode = lower.mode();
+    let spread = Spread::of(lower.b(), position);
+    let size = lower.b().sqrt(spread.eigenvalues[0]);
+    // The spectrum of a box has half its energy below a third of a cycle per cell.
+    let size = lower.b().scale(size, 1.0 / 3.0);
+    lower.source_footprint(size);
+    let key = format!("cells {mode:?} {seed} {period}");
+    let function = lower.function(&key, |module| build(module, mode, seed, period));
+    let b = lower.b();
+    let mut arguments = Vec::new();
+    for axis in position {
+        arguments.extend(split(b, axis));
+    }
+    if mode.filters() {
+        arguments.extend(spread.covariance);
+        arguments.extend(spread.eigenvalues);
+    }
+    let results = b.call(&function, &arguments);
+    let zero = b.f32(0.0);
+    let at = |i: usize| results.get(i).copied().unwrap_or(zero);
+    Field {
+        mean: at(0),
+        gradient: [at(1), at(2)],
+        hessian: [zero; 3],
+        rest: at(3),
+    }
+}
+
+/// A window over `count` = ⌈2·REACH·σ⌉ + 1 cells that starts at ⌊m − REACH σ⌋.
+fn window(b: &mut Builder, mean: Value, sd: Value) -> [Value; 2] {
+    let reach = b.scale(sd, REACH);
+    let start = b.sub(mean, reach);
+    let start = b.floor(start);
+    let minus = b.scale(reach, -2.0);
+    let floor = b.floor(minus);
+    let count = b.neg(floor);
+    let count = b.offset(count, 1.0);
+    [start, b.clamp(count, 1.0, MOST)]
+}
+
+/// The cells of one row, the body of a fold over columns: the state is Φ and φ at the last edge, then
+/// sums of weights P, of P d, of P d², and of d(φ₀ − φ₁), d being the number less the centre's.
+fn column(module: &mut Module, period: i32) -> FunctionRef {
+    let mut b = Builder::new("cell_column", "One cell of a row.");
+    let index = b.param("index", Type::U32);
+    let names = ["below", "density", "weight", "first", "second", "slope"];
+    let state = names.map(|name| b.param_f32(name));
+    let start = b.param_f32("start");
+    let (mean, inverse) = (b.param_f32("mean"), b.param_f32("inverse_sd"));
+    let centre = b.param_f32("centre");
+    let cell = b.param("cell_x", Type::I32);
+    let row = b.param("row", Type::I32);
+    let seed = b.param("seed", Type::U32);
+    let offset = b.float_u(index);
+    let place = b.add(start, offset);
+    let edge = b.offset(place, 1.0);
+    let distance = b.sub(edge, mean);
+    let n = Normal::at(&mut b, distance, inverse);
+    let whole = b.trunc_i(place);
+    let column = b.add_i(cell, whole);
+    let (value, _) = number(&mut b, column, row, seed, period);
+    let d = b.sub(value, centre);
+    let p = b.sub(n.below, state[0]);
+    let zero = b.f32(0.0);
+    let p = b.max(p, zero);
+    let change = b.sub(state[1], n.density);
+    let (first, second) = (b.mul(p, d), b.square(d));
+    let second = b.mul(p, second);
+    let slope = b.mul(change, d);
+    let next = [
+        n.below,
+        n.density,
+        b.add(state[2], p),
+        b.add(state[3], first),
+        b.add(state[4], second),
+        b.add(state[5], slope),
+    ];
+    for (name, value) in names.into_iter().zip(next) {
+        b.result(name, value);
+    }
+    b.finish(module)
+}
+
+/// One row of cells, the body of a fold: sums of the weight, of d, of d², and of both slopes.
+fn row(module: &mut Module, period: i32) -> FunctionRef {
+    let column = column(module, period);
+    let mut b = Builder::new("cell_row", "One row of cells.");
+    let index = b.param("index", Type::U32);
+    let names = ["weight", "first", "second", "slope_x", "slope_y"];
+    let state = names.map(|name| b.param_f32(name));
+    let start = b.param_f32("start");
+    let (x, y) = (b.param_f32("x"), b.param_f32("y"));
+    let centre = b.param_f32("centre");
+    let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
+    let seed = b.param("seed", Type::U32);
+    let (sd, inverse) = (b.param_f32("sd_y"), b.param_f32("inverse_sd_y"));
+    let (shear, across) = (b.param_f32("shear"), b.param_f32("variance_across"));
+    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let offset = b.float_u(index);
+    let place = b.add(start, offset);
+    let low = b.sub(place, y);
+    let high = b.offset(low, 1.0);
+    let (n0, n1) = (
+        Normal::at(&mut b, low, inverse),
+        Normal::at(&mut b, high, inverse),
+    );
+    let weight = b.sub(n1.below, n0.below);
+    let weight = b.max(weight, zero);
+    // Mean and variance of y − y₀ given the row: a truncated normal's.
+    let tiny = b.f32(1e-6);
+    let guarded = b.max(weight, tiny);
+    let fall = b.sub(n0.density, n1.density);
+    let lean = b.div(fall, guarded);
+    let moved = b.mul(lean, sd);
+    let moved = b.max(moved, low);
+    let moved = b.min(moved, high);
+    let (left, right) = (b.mul(n0.z, n0.density), b.mul(n1.z, n1.density));
+    let change = b.sub(left, right);
+    let change = b.div(change, guarded);
+    let square = b.square(lean);
+    let share = b.sub(change, square);
+    let share = b.offset(share, 1.0);
+    let share = b.clamp(share, 0.0, 1.0);
+    let v = b.square(sd);
+    let within = b.mul(share, v);
+    let widest = b.f32(VARIANCE);
+    let within = b.min(within, widest);
+    let share = b.square(inverse);
+    let share = b.mul(within, share);
+    // x given the row.
+    let shift = b.mul(shear, moved);
+    let mean = b.add(x, shift);
+    let square = b.square(shear);
+    let spread = b.mul(square, within);
+    let variance = b.add(across, spread);
+    let raised = b.offset(variance, 1e-12);
+    let sd_x = b.sqrt(raised);
+    let inverse_x = b.div(one, sd_x);
+    let [first, count] = window(&mut b, mean, sd_x);
+    let distance = b.sub(first, mean);
+    let n = Normal::at(&mut b, distance, inverse_x);
+    let whole = b.trunc_i(place);
+    let row = b.add_i(cells[1], whole);
+    let count = b.trunc_i(count);
+    let count = b.cast_u(count);
+    let init = [n.below, n.density, zero, zero, zero, zero];
+    let captures = [first, mean, inverse_x, centre, cells[0], row, seed];
+    let sums = b.fold(&column, count, &init, &captures);
+    let total = b.max(sums[2], tiny);
+    let scale = b.div(one, total);
+    let (m1, m2) = (b.mul(sums[3], scale), b.mul(sums[4], scale));
+    let slope = b.mul(sums[5], scale);
+    let slope = b.mul(slope, inverse_x);
+    // ∂/∂y₀: of the row's weight, and of the mean of x, β (dμ/dy₀ − 1) with dμ/dy₀ = var/σ².
+    let gain = b.mul(fall, inverse);
+    let direct = b.mul(gain, m1);
+    let lag = b.sub(share, one);
+    let lag = b.mul(shear, lag);
+    let lag = b.mul(lag, weight);
+    let indirect = b.mul(lag, slope);
+    let slope_y = b.add(direct, indirect);
+    let parts = [
+        weight,
+        b.mul(weight, m1),
+        b.mul(weight, m2),
+        b.mul(weight, slope),
+        slope_y,
+    ];
+    for ((name, sum), part) in names.into_iter().zip(state).zip(parts) {
+        let sum = b.add(sum, part);
+        b.result(name, sum);
+    }
+    b.finish(module)
+}
+
+fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef {
+    let row = mode.filters().then(|| row(module, period));
+    let mut b = Builder::new("cells", "Filtered random cells.");
+    let cell_x = b.param("cell_x", Type::I32);
+    let x = b.param_f32("x");
+    let cell_y = b.param("cell_y", Type::I32);
+    let y = b.param_f32("y");
+    let seed = lattice_seed(&mut b, seed, 0xbb67_ae85);
+    let inner = [x, y].map(|x| b.floor(x));
+    let inner = inner.map(|x| b.trunc_i(x));
+    let (cx, cy) = (b.add_i(cell_x, inner[0]), b.add_i(cell_y, inner[1]));
+    let (centre, _) = number(&mut b, cx, cy, seed, period);
+    let Some(row) = row else {
+        b.result("mean", centre);
+        return b.finish(module);
+    };
+    let [s_xx, s_xy, s_yy] = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
+    let eigenvalues = [b.param_f32("s_major"), b.param_f32("s_minor")];
+    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let raised = b.offset(s_yy, 1e-12);
+    let sd = b.sqrt(raised);
+    let inverse = b.div(one, sd);
+    let shear = b.div(s_xy, raised);
+    // What x has beyond y: det Σ/Σ₂₂, from the eigenvalues.
+    let determinant = b.mul(eigenvalues[0], eigenvalues[1]);
+    let across = b.div(determinant, raised);
+    let across = b.min(across, s_xx);
+    let [start, rows] = window(&mut b, y, sd);
+    // Windows that would be too large fade.
+    let wide = b.sqrt(s_xx);
+    let wide = b.max(wide, sd);
+    let largest = (MOST - 1.0) / (2.0 * REACH);
+    let fade = b.scale(wide, -4.0 / largest);
+    let fade = b.offset(fade, 4.0);
+    let fade = b.clamp(fade, 0.0, 1.0);
+    let gone = b.le(fade, zero);
+    let none = b.u32(0);
+    let count = b.trunc_i(rows);
+    let count = b.cast_u(count);
+    let count = b.select(gone, none, count);
+    let captures = [
+        start, x, y, centre, cell_x, cell_y, seed, sd, inverse, shear, across,
+    ];
+    let sums = b.fold(&row, count, &[zero; 5], &captures);
+    let tiny = b.f32(1e-6);
+    let total = b.max(sums[0], tiny);
+    let scale = b.div(one, total);
+    let [m1, m2, slope_x, slope_y] = [1, 2, 3, 4].map(|i| b.mul(sums[i], scale));
+    // M = ½ + fade (v₀ + m₁ − ½).
+    let mean = b.add(centre, m1);
+    let mean = b.offset(mean, -0.5);
+    let mean = b.mul(mean, fade);
+    let mean = b.offset(mean, 0.5);
+    let mean = b.clamp(mean, 0.0, 1.0);
+    b.result("mean", mean);
+    let carries = matches!(mode, Mode::Local | Mode::Quad);
+    let slopes = [slope_x, slope_y].map(|slope| b.mul(slope, fade));
+    for (name, slope) in ["dx", "dy"].into_iter().zip(slopes) {
+        let slope = if carries { slope } else { zero };
+        b.result(name, slope);
+    }
+    if mode.spreads() {
+        let whole = b.f32(VARIANCE);
+        let rest = if carries {
+            let square = b.square(m1);
+            let variance = b.sub(m2, square);
+            let left = b.dot(&[s_xx, s_xy], &slopes);
+            let right = b.dot(&[s_xy, s_yy], &slopes);
+            let linear = b.dot(&slopes, &[left, right]);
+            let rest = b.sub(variance, linear);
+            let rest = b.max(rest, zero);
+            let near = b.mul(rest, fade);
+            let kept = b.sub(one, fade);
+            let far = b.mul(whole, kept);
+            b.add(near, far)
+        } else {
+            let shares = eigenvalues.map(|v| coincidence(&mut b, v));
+            let left = b.mul(shares[0], shares[1]);
+            let left = b.mul(left, fade);
+            let lost = b.sub(one, left);
+            b.mul(lost, whole)
+        };
+        b.result("rest", rest);
+    }
+    b.finish(module)
+}

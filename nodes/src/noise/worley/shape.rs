@@ -1,0 +1,133 @@
+//! What a Worley noise is, and its measured statistics: means and variances over the plane, how much
+//! of a footprint's taps stands, and how much variance a footprint removes.
+//!
+//! Measured over 4 × 60 000 places (moments) and 1000 footprints of 400 samples for each size from
+//! 0.02 to 1 cells, at a jitter of 1; smaller jitters take the same curves.
+
+use mipless_codegen::ir::{Builder, Value};
+
+/// Of which point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Output {
+    /// The nearest.
+    First,
+    /// The second nearest.
+    Second,
+    /// The second less the first.
+    Difference,
+}
+
+/// What a Worley noise is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Worley {
+    /// How far points leave the centres of their cells: 1 for anywhere in the cell.
+    pub(crate) jitter: f32,
+    /// Whether the value is the point's random number instead of its distance.
+    pub(crate) solid: bool,
+    /// Of which point.
+    pub(crate) output: Output,
+    /// After how many cells it repeats; 0 for never.
+    pub(crate) period: i32,
+    /// Selects the points.
+    pub(crate) seed: i32,
+}
+
+/// Mean and standard deviation at jitters of 0, ¼, ½, ¾ and 1: F1, F2, F2 − F1.
+const DISTANCES: [[[f32; 2]; 5]; 3] = [
+    [
+        [0.3826, 0.1427],
+        [0.3858, 0.1462],
+        [0.3959, 0.1575],
+        [0.4116, 0.1736],
+        [0.4293, 0.1898],
+    ],
+    [
+        [0.6996, 0.1033],
+        [0.7010, 0.1106],
+        [0.7018, 0.1314],
+        [0.7010, 0.1545],
+        [0.6994, 0.1766],
+    ],
+    [
+        [0.3170, 0.2334],
+        [0.3152, 0.2272],
+        [0.3059, 0.2175],
+        [0.2894, 0.2076],
+        [0.2701, 0.2019],
+    ],
+];
+
+impl Worley {
+    /// Mean and variance over the plane.
+    pub(crate) fn moments(self) -> [f32; 2] {
+        if self.solid {
+            return match self.output {
+                Output::Difference => [0.0, 1.0 / 6.0],
+                _ => [0.5, 1.0 / 12.0],
+            };
+        }
+        let rows = &DISTANCES[self.output as usize];
+        // Lagrange's quartic through the five rows.
+        let mut sums = [0.0f32; 2];
+        for (i, row) in rows.iter().enumerate() {
+            let mut weight = 1.0;
+            for j in (0..5).filter(|&j| j != i) {
+                weight *= (4.0 * self.jitter - j as f32) / (i as f32 - j as f32);
+            }
+            sums[0] += weight * row[0];
+            sums[1] += weight * row[1];
+        }
+        [sums[0], sums[1] * sums[1]]
+    }
+
+    /// 1/(1 + (s/s₀)^p) of a size.
+    fn falloff(b: &mut Builder, size: Value, s0: f32, power: f32) -> Value {
+        let (least, one) = (b.f32(1e-6), b.f32(1.0));
+        let size = b.max(size, least);
+        let ratio = b.scale(size, 1.0 / s0);
+        let log = b.ln(ratio);
+        let log = b.scale(log, power);
+        let log = b.clamp(log, -80.0, 40.0);
+        let raised = b.exp(log);
+        let below = b.offset(raised, 1.0);
+        b.div(one, below)
+    }
+
+    /// The slopes of the true average and of the true variance on those of the taps; `size` is half
+    /// the sum of the footprint's axes, in cells.
+    pub(super) fn slopes(self, b: &mut Builder, size: Value) -> (Value, Value) {
+        if self.solid {
+            let slope = Self::falloff(b, size, 0.76, 2.2);
+            return (slope, slope);
+        }
+        let [s0, power] = match self.output {
+            Output::First => [0.465, 5.57],
+            Output::Second => [0.582, 3.49],
+            Output::Difference => [0.33, 5.0],
+        };
+        let slope = Self::falloff(b, size, s0, power);
+        (slope, Self::falloff(b, size, 0.22, 3.0))
+    }
+
+    /// The share of the variance that the average over a footprint has lost, on average:
+    /// t/(1 + t), t = γs + αs² + βs⁴.
+    pub(super) fn lost(self, b: &mut Builder, size: Value) -> Value {
+        let [gamma, alpha, beta] = match (self.solid, self.output) {
+            (true, Output::Difference) => [3.2, 12.0, 0.0],
+            (true, _) => [2.2, 8.0, 0.0],
+            (false, Output::First) => [0.0, 24.0, 70.0],
+            (false, Output::Second) => [0.0, 19.0, 17.0],
+            (false, Output::Difference) => [0.0, 60.0, 20.0],
+        };
+        let limit = b.f32(1e4);
+        let size = b.min(size, limit);
+        let square = b.square(size);
+        let t = b.scale(square, beta);
+        let t = b.offset(t, alpha);
+        let t = b.mul(t, square);
+        let first = b.scale(size, gamma);
+        let t = b.add(t, first);
+        let below = b.offset(t, 1.0);
+        b.div(t, below)
+    }
+}
