@@ -12,6 +12,7 @@ mod absval;
 mod add;
 mod brick;
 mod checkerboard;
+mod circle;
 mod clamp;
 mod colorramp;
 mod combine3;
@@ -20,8 +21,10 @@ mod divide;
 mod extract;
 mod fractal2d;
 mod grid;
+mod hexagon;
 mod invert;
 mod kaleidoscope;
+mod line;
 mod luminance;
 mod max;
 mod min;
@@ -38,6 +41,7 @@ mod ramptb;
 mod range;
 mod repeat;
 mod rotate2d;
+mod shape;
 mod sin;
 mod smoothstep;
 mod spectralnoise2d;
@@ -67,10 +71,14 @@ static CATALOGUE: &[NodeDef] = &[
     // Pattern.
     brick::DEF,
     checkerboard::DEF,
+    circle::DEF,
     grid::DEF,
+    hexagon::DEF,
+    line::DEF,
     ramp4::DEF,
     ramplr::DEF,
     ramptb::DEF,
+    shape::DEF,
     splitlr::DEF,
     splittb::DEF,
     stripes::DEF,

@@ -2,7 +2,9 @@
 
 pub(crate) mod angle;
 pub(crate) mod bond;
+pub(crate) mod figure;
 pub(crate) mod pulse;
+pub(crate) mod region;
 pub(crate) mod separable;
 #[cfg(test)]
 mod tests;

@@ -164,7 +164,7 @@ fn finished(lower: &mut Lower<'_>, value: Value, sharp: bool) -> Signal {
 }
 
 /// A sharp pattern takes two values, and every pattern bends.
-fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool) -> Signal {
+pub(crate) fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool) -> Signal {
     lower.algebra.bent = true;
     let b = lower.b();
     let binary = (sharp && !signal.is_certain(b)).then(|| [0.0, 1.0].map(|x| b.f32(x)));
