@@ -4,6 +4,7 @@ pub(crate) mod angle;
 pub(crate) mod bond;
 pub(crate) mod figure;
 pub(crate) mod pulse;
+pub(crate) mod random;
 pub(crate) mod region;
 pub(crate) mod separable;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! One figure around a centre: 1 inside, 0 outside.
 
 use super::region::{Measure, Outline, Whitening, disc};
-use super::separable::{finished_signal, rest};
+use super::separable::{finished_signal, rest_of_two};
 use crate::componentwise::difference;
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::ir::Value;
@@ -88,7 +88,7 @@ pub(crate) fn sharp(lower: &mut Lower<'_>, measure: Measure, spread: &Spread) ->
         rest: zero,
     };
     if mode.spreads() {
-        field.rest = rest(b, &field, spread, None);
+        field.rest = rest_of_two(b, &field, spread);
     }
     field
 }

@@ -151,8 +151,10 @@ pub(crate) fn filtered(
     let mean = b.clamp(field.mean, 0.0, 1.0);
     let mut field = Field { mean, ..field };
     if mode.spreads() {
-        let softness = (pattern.soft.as_ref()).map(|soft| soft.width);
-        field.rest = rest(b, &field, &spread, square.zip(softness));
+        field.rest = match (square, &pattern.soft) {
+            (Some(square), Some(soft)) => rest_of_ramps(b, &field, &spread, square, soft.width),
+            _ => rest_of_two(b, &field, &spread),
+        };
     }
     let signal = field.at(lower, position);
     finished_signal(lower, signal, sharp)
@@ -174,26 +176,9 @@ pub(crate) fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool
     }
 }
 
-/// Var − |g|² − ½‖H‖². A sharp pattern is 0 or 1: its variance is P(1 − P). One with ramps has
-/// E[P²] − P², and no more than the ramps' linear response while the footprint lies within them.
-pub(crate) fn rest(
-    b: &mut Builder,
-    field: &Field,
-    spread: &Spread,
-    soft: Option<(Value, [Value; 2])>,
-) -> Value {
+/// What the response of a field to the footprint leaves of a variance: Var − |g|² − ½‖H‖², at least 0.
+pub(crate) fn rest(b: &mut Builder, field: &Field, spread: &Spread, variance: Value) -> Value {
     let [xx, xy, yy] = spread.covariance;
-    let one = b.f32(1.0);
-    let variance = match soft {
-        None => {
-            let other = b.sub(one, field.mean);
-            b.mul(field.mean, other)
-        }
-        Some((square, _)) => {
-            let squared = b.square(field.mean);
-            b.sub(square, squared)
-        }
-    };
     let [dx, dy] = field.gradient;
     let (px, py) = (b.dot(&[xx, xy], &[dx, dy]), b.dot(&[xy, yy], &[dx, dy]));
     let linear = b.dot(&[dx, dy], &[px, py]);
@@ -210,25 +195,46 @@ pub(crate) fn rest(
         rest = b.sub(rest, trace);
     }
     let zero = b.f32(0.0);
-    rest = b.max(rest, zero);
-    if let Some((_, [wide, high])) = soft {
-        // The response of a ramp is linear where the footprint lies within it.
-        let share = |b: &mut Builder, variance: Value, width: Value| {
-            let square = b.square(width);
-            let square = b.scale(square, 0.16);
-            let sum = b.add(variance, square);
-            let sum = b.offset(sum, 1e-12);
-            b.div(square, sum)
-        };
-        let (left, right) = (share(b, xx, wide), share(b, yy, high));
-        let within = b.mul(left, right);
-        let beyond = b.sub(one, within);
-        rest = b.mul(rest, beyond);
-    }
-    rest
+    b.max(rest, zero)
 }
 
-fn orders(mode: Mode) -> usize {
+/// The same of a pattern that is 0 or 1, whose variance is P(1 − P).
+pub(crate) fn rest_of_two(b: &mut Builder, field: &Field, spread: &Spread) -> Value {
+    let one = b.f32(1.0);
+    let other = b.sub(one, field.mean);
+    let variance = b.mul(field.mean, other);
+    rest(b, field, spread, variance)
+}
+
+/// The same of a pattern with ramps, from the mean of its square: no more than the ramps' linear
+/// response is left while the footprint lies within them.
+fn rest_of_ramps(
+    b: &mut Builder,
+    field: &Field,
+    spread: &Spread,
+    square: Value,
+    [wide, high]: [Value; 2],
+) -> Value {
+    let squared = b.square(field.mean);
+    let variance = b.sub(square, squared);
+    let rest = rest(b, field, spread, variance);
+    // 1 − (1 − f₁)(1 − f₂) with f = σ²/(σ² + (0.4 w)²).
+    let share = |b: &mut Builder, variance: Value, width: Value| {
+        let square = b.square(width);
+        let square = b.scale(square, 0.16);
+        let sum = b.add(variance, square);
+        let sum = b.offset(sum, 1e-12);
+        b.div(square, sum)
+    };
+    let [xx, _, yy] = spread.covariance;
+    let (left, right) = (share(b, xx, wide), share(b, yy, high));
+    let within = b.mul(left, right);
+    let one = b.f32(1.0);
+    let beyond = b.sub(one, within);
+    b.mul(rest, beyond)
+}
+
+pub(super) fn orders(mode: Mode) -> usize {
     match mode {
         Mode::Point | Mode::Naive | Mode::Ensemble => 1,
         Mode::Local => 3,

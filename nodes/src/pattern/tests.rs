@@ -183,6 +183,15 @@ fn bricks_are_filtered_exactly() {
 }
 
 #[test]
+fn random_bricks_are_filtered_until_they_fade() {
+    for bond in ["running", "flemish", "herringbone"] {
+        let inputs =
+            json!({ "bond": bond, "columns": 1, "rows": 2, "output": "random", "seed": 3 });
+        held("brick", &inputs, 0.7, [[0.01, 0.01]; 2]);
+    }
+}
+
+#[test]
 fn bevelled_bricks_have_their_mean_and_nearly_their_variance() {
     for bond in ["running", "herringbone"] {
         let inputs = json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": 0.1, "bevel": 0.3 });
