@@ -52,6 +52,8 @@ mod stripes;
 mod subtract;
 mod swirl;
 mod texcoord;
+mod tiledcircles;
+mod tiledhexagons;
 mod warp;
 
 pub use page::{describe, page};
@@ -82,6 +84,8 @@ static CATALOGUE: &[NodeDef] = &[
     splitlr::DEF,
     splittb::DEF,
     stripes::DEF,
+    tiledcircles::DEF,
+    tiledhexagons::DEF,
     // Arithmetic.
     add::DEF,
     divide::DEF,

@@ -9,4 +9,5 @@ pub(crate) mod region;
 pub(crate) mod separable;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tiling;
 pub(crate) mod triangle;

@@ -271,6 +271,16 @@ fn figures_are_filtered_exactly() {
 }
 
 #[test]
+fn tilings_are_filtered_exactly_unless_they_are_blurred_across() {
+    for (staggered, size) in [(false, 0.5), (true, 0.9), (false, 0.95)] {
+        let inputs = json!({ "size": size, "staggered": staggered });
+        for name in ["tiledcircles", "tiledhexagons"] {
+            held(name, &inputs, 1.0, [[tolerance(); 2], [0.01; 2]]);
+        }
+    }
+}
+
+#[test]
 fn coordinates_have_the_moments_that_their_pages_state() {
     held("mirror", &json!({}), 1.0, [[2e-3, 5e-3]; 2]);
     held("swirl", &json!({}), 0.025, [[0.02; 2], [0.07; 2]]);
