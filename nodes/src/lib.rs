@@ -20,6 +20,8 @@ mod constant;
 mod divide;
 mod extract;
 mod fractal2d;
+mod gradientangular;
+mod gradientradial;
 mod grid;
 mod hexagon;
 mod invert;
@@ -74,6 +76,8 @@ static CATALOGUE: &[NodeDef] = &[
     brick::DEF,
     checkerboard::DEF,
     circle::DEF,
+    gradientangular::DEF,
+    gradientradial::DEF,
     grid::DEF,
     hexagon::DEF,
     line::DEF,

@@ -6,6 +6,7 @@ pub(crate) mod figure;
 pub(crate) mod pulse;
 pub(crate) mod random;
 pub(crate) mod region;
+pub(crate) mod sawtooth;
 pub(crate) mod separable;
 #[cfg(test)]
 mod tests;

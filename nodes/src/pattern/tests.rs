@@ -281,6 +281,17 @@ fn tilings_are_filtered_exactly_unless_they_are_blurred_across() {
 }
 
 #[test]
+fn gradients_around_a_centre_have_nearly_their_means() {
+    held("gradientradial", &json!({}), 0.5, [[0.03; 2], [0.09; 2]]);
+    held(
+        "gradientangular",
+        &json!({ "center": [-2, -3] }),
+        0.3,
+        [[0.02; 2]; 2],
+    );
+}
+
+#[test]
 fn coordinates_have_the_moments_that_their_pages_state() {
     held("mirror", &json!({}), 1.0, [[2e-3, 5e-3]; 2]);
     held("swirl", &json!({}), 0.025, [[0.02; 2], [0.07; 2]]);
