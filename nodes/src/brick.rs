@@ -31,7 +31,7 @@ static SPEC: NodeSpec = NodeSpec {
             coordinate. Given the part of the footprint that both coordinates share, they are \
             independent Gaussians and each pulse has its closed form (a sum over its edges up to \
             σ = 0.2 periods, three damped harmonics beyond); the shared part is integrated by the \
-            trapezoid rule, one node for a footprint along the axes and 27 for 8:1 at 45 degrees. \
+            trapezoid rule, one node for a footprint along the axes and 31 for 8:1 at 45 degrees. \
             Without a bevel the variance is P(1 − P); with one, that of a pulse with the same mean \
             square, approximate. Random numbers are weighted by the share of the footprint that \
             each brick holds, and fade to their mean, 1/2, where the footprint (after the shared \

@@ -19,13 +19,14 @@ static SPEC: NodeSpec = NodeSpec {
             the middle of every unit cell, else 0. Where the tiling is staggered, the figures stand \
             at the origin and in rows that are 0.866 cells apart and shifted by half a cell, so that \
             each has six neighbours.",
-        statistics: "Footprints whose minor axis is below 0.16 cells and whose major axis is below 1 cell sum \
-            the exact measures of the figures near them, disc by disc. All others damp the Fourier \
-            series of the lattice by e^{−2π²kᵀΣk}, exact for any covariance; those that are thinner \
-            are widened to 0.16 cells first. Variance P(1 − P). Over a large footprint the mean is \
-            the share of the plane that the figures cover.",
-        accuracy: "The mean is within 2e-3, but for footprints that are longer than 1 cell and thinner than \
-            0.16: these are blurred across. Held by `nodes/src/pattern/tests.rs` against dense sums.",
+        statistics: "Footprints whose minor axis is below 0.16 cells and whose major axis is below 1.3 cells \
+            sum the exact measures of the figures near them, disc by disc. All others damp the \
+            Fourier series of the lattice by e^{−2π²kᵀΣk}, exact for any covariance; those that are \
+            thinner are widened first, gradually from a length of 0.9 cells. Variance P(1 − P). Over \
+            a large footprint the mean is the share of the plane that the figures cover.",
+        accuracy: "The mean is within 2e-3, but for footprints that are longer than 0.9 cells and thinner \
+            than 0.16: these are blurred across, which is within 0.01 at 8:1. Held by \
+            `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Watson 1944, *A Treatise on the Theory of Bessel Functions* (the transform of a disc). \
             Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (a footprint \
             as a low-pass). MaterialX 1.39, node `tiledcircles` of its standard library.",

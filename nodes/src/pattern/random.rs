@@ -1,8 +1,8 @@
 //! A random number for each brick of a bond, filtered.
 //!
 //! Bricks with half of the joints around them cover the plane: the mean is ½ + Σ w (r − ½), with w
-//! the share of the footprint that a brick holds. Rows and columns within 3.4 σ are summed. Where
-//! that would be more than 25 unit cells, the sum has faded to ½, whose share of the variance is
+//! the share of the footprint that a brick holds. Rows and columns within 4 σ are summed. Where
+//! that would be more than 29 unit cells, the sum has faded to ½, whose share of the variance is
 //! that of the numbers.
 
 use super::bond::{Bond, Brick};
@@ -173,10 +173,10 @@ fn share(b: &mut Builder, low: Value, high: Value, inverse: Value) -> [Value; 3]
 fn window(b: &mut Builder, from: Value, sd: Value) -> [Value; 2] {
     let most = b.f32(FADE[1]);
     let sd = b.min(sd, most);
-    let reach = b.scale(sd, -3.4);
+    let reach = b.scale(sd, -4.0);
     let reach = b.floor(reach);
     let minus = b.f32(-1.0);
-    // −⌊−3.4 σ⌋ copies on each side, at least one.
+    // −⌊−4 σ⌋ copies on each side, at least one.
     let reach = b.min(reach, minus);
     let twice = b.scale(reach, -2.0);
     let count = b.offset(twice, 1.0);

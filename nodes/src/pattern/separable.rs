@@ -4,7 +4,7 @@
 //! m + w t + √(1 − ρ) (σ₁ε₁, ±σ₂ε₂), w = √ρ (σ₁, ±σ₂), with independent standard t, ε₁ and ε₂: given
 //! t, the mean of a product is the product of the means, in closed form. What is left is one
 //! integral over t of a function that is smooth at the scale √((1 − ρ)/ρ): the trapezoid rule at
-//! 1.5 of it, within ±3.6, is exact to 5e-4. An axis-aligned footprint needs one node.
+//! 1.5 of it, within ±4.1, is exact to 2e-4. An axis-aligned footprint needs one node.
 //!
 //! Correlations are limited to [`MOST_CORRELATED`]: 10:1 at 45 degrees. A longer footprint keeps its
 //! spread along both coordinates and is blurred across.
@@ -26,7 +26,7 @@ const WIDEST_STEP: f32 = 1.5;
 const SMOOTH_STEP: f32 = 1.5;
 
 /// Where the integral over t ends.
-const REACH: f32 = 3.6;
+const REACH: f32 = 4.1;
 
 /// A coefficient times at most one pulse a coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -297,16 +297,19 @@ impl Taps {
         let ratio = b.scale(ratio, 1.0 / (SMOOTH_STEP * SMOOTH_STEP));
         let inverse = b.offset(ratio, 1.0 / (WIDEST_STEP * WIDEST_STEP));
         let inverse = b.sqrt(inverse);
-        let intervals = b.scale(inverse, 2.0 * REACH);
-        let intervals = b.floor(intervals);
+        // One node is always in the middle: as the footprint turns, nodes come and go where their
+        // weight is next to nothing.
+        let half = b.scale(inverse, REACH);
+        let half = b.floor(half);
         // Without a correlation there is nothing to integrate.
-        let least = b.f32(1e-3);
+        let least = b.f32(1e-4);
         let alone = b.lt(rho, least);
-        let intervals = b.select(alone, zero, intervals);
+        let half = b.select(alone, zero, half);
         let step = b.div(one, inverse);
-        let half = b.scale(intervals, -0.5);
         let start = b.mul(half, step);
-        let count = b.offset(intervals, 1.0);
+        let start = b.neg(start);
+        let count = b.scale(half, 2.0);
+        let count = b.offset(count, 1.0);
         let count = b.trunc_i(count);
         let count = b.cast_u(count);
         Self {

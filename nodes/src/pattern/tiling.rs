@@ -3,7 +3,8 @@
 //! Footprints whose minor axis is below [`CROSSOVER`] and whose major axis is below [`LONGEST`] sum
 //! the exact measures of the figures near them. For all others the figures are a Fourier series of
 //! the lattice, damped by e^{−2π²kᵀΣk}, exact for any covariance, of which everything beyond |k| =
-//! [`HIGHEST`] is below 2e-4; a footprint that is longer and thinner is widened to the crossover.
+//! [`HIGHEST`] is below 2e-4; a footprint that is longer and thinner is widened to the
+//! crossover, gradually from 0.7 of that length.
 
 use super::figure::sharp;
 use super::region::{Measure, NAMES, Outline, Whitening, disc_function};
@@ -18,13 +19,13 @@ use std::f64::consts::{PI, TAU};
 const CROSSOVER: f32 = 0.16;
 
 /// The longest major axis over which figures are summed one by one, in cells.
-const LONGEST: f32 = 1.0;
+const LONGEST: f32 = 1.3;
 
 /// The highest frequency of the series, in cycles per cell.
 const HIGHEST: f64 = 4.3;
 
 /// How far a footprint reaches, in standard deviations.
-const REACH: f32 = 3.6;
+const REACH: f32 = 4.0;
 
 /// The distance of rows of a triangular lattice, as MaterialX has it.
 const ROW: f64 = 0.866_025;
@@ -276,37 +277,16 @@ fn tiling_function(module: &mut Module, lattice: Lattice, tile: &Tile) -> Functi
     let (thin, short) = (b.lt(less, crossover), b.lt(more, longest));
     let single = b.and(thin, short);
 
-    // One by one: rows within reach of the footprint.
+    // Σ + (s² − λ₂) along the minor axis, with s from 0 where the major axis is 0.7 of the longest to
+    // the crossover where it is all of it.
     let [xx, xy, yy] = covariance;
-    let reach = tile.reach() as f32;
-    let raised = b.offset(yy, 1e-12);
-    let sd = b.sqrt(raised);
-    let extent = b.scale(sd, REACH);
-    let extent = b.offset(extent, reach);
-    let step = lattice.row() as f32;
-    let from = b.offset(place[1], -lattice.origin() as f32);
-    let (low, high) = (b.sub(from, extent), b.add(from, extent));
-    let (low, high) = (b.scale(low, 1.0 / step), b.scale(high, 1.0 / step));
-    let (below, last) = (b.floor(low), b.floor(high));
-    let first = b.offset(below, 1.0);
-    let rows = b.sub(last, below);
-    let rows = b.clamp(rows, 0.0, 16.0);
-    let rows = b.select(single, rows, zero);
-    let rows = b.trunc_i(rows);
-    let rows = b.cast_u(rows);
-    let whitening = Whitening::of(&mut b, covariance);
-    let slope = b.div(xy, raised);
-    let mut captures = vec![place[0], place[1], first, slope, sd];
-    captures.extend(whitening.captures());
-    captures.extend(covariance);
-    let near = b.fold(&row, rows, &[zero; 6], &captures);
-    let near: Measure = std::array::from_fn(|i| near[i]);
-
-    // All at once, where Σ is wide enough or is made so: Σ + (s² − λ₂) along the minor axis.
-    let count = b.u32(count as u32);
-    let none = b.u32(0);
-    let count = b.select(single, none, count);
-    let lack = b.sub(crossover, less);
+    let length = b.sqrt(more);
+    let share = b.scale(length, 1.0 / (0.3 * LONGEST));
+    let share = b.offset(share, -0.7 / 0.3);
+    let share = b.clamp(share, 0.0, 1.0);
+    let target = b.scale(share, CROSSOVER);
+    let target = b.square(target);
+    let lack = b.sub(target, less);
     let lack = b.max(lack, zero);
     let span = b.sub(more, less);
     let span = b.offset(span, 1e-12);
@@ -325,6 +305,36 @@ fn tiling_function(module: &mut Module, lattice: Lattice, tile: &Tile) -> Functi
         let sum = b.add(v, part);
         b.add(sum, even)
     });
+    // One by one: rows within reach of the footprint.
+    let [_, xy, yy] = widened;
+    let reach = tile.reach() as f32;
+    let raised = b.offset(yy, 1e-12);
+    let sd = b.sqrt(raised);
+    let extent = b.scale(sd, REACH);
+    let extent = b.offset(extent, reach);
+    let step = lattice.row() as f32;
+    let from = b.offset(place[1], -lattice.origin() as f32);
+    let (low, high) = (b.sub(from, extent), b.add(from, extent));
+    let (low, high) = (b.scale(low, 1.0 / step), b.scale(high, 1.0 / step));
+    let (below, last) = (b.floor(low), b.floor(high));
+    let first = b.offset(below, 1.0);
+    let rows = b.sub(last, below);
+    let rows = b.clamp(rows, 0.0, 16.0);
+    let rows = b.select(single, rows, zero);
+    let rows = b.trunc_i(rows);
+    let rows = b.cast_u(rows);
+    let whitening = Whitening::of(&mut b, widened);
+    let slope = b.div(xy, raised);
+    let mut captures = vec![place[0], place[1], first, slope, sd];
+    captures.extend(whitening.captures());
+    captures.extend(widened);
+    let near = b.fold(&row, rows, &[zero; 6], &captures);
+    let near: Measure = std::array::from_fn(|i| near[i]);
+
+    // All at once, where Σ is wide enough or has been made so.
+    let count = b.u32(count as u32);
+    let none = b.u32(0);
+    let count = b.select(single, none, count);
     let mut captures = place.to_vec();
     captures.extend(widened);
     let start = b.f32(mean as f32);
