@@ -1,9 +1,8 @@
 //! A random number for each brick of a bond, filtered.
 //!
 //! Bricks with half of the joints around them cover the plane: the mean is ½ + Σ w (r − ½), with w
-//! the share of the footprint that a brick holds. Rows and columns within 4 σ are summed. Where
-//! that would be more than 29 unit cells, the sum has faded to ½, whose share of the variance is
-//! that of the numbers.
+//! the share of the footprint that a brick holds. Rows and columns within 3.8 σ are summed. Where
+//! that would be too many the sum fades to ½, whose share of the variance is that of the numbers.
 
 use super::bond::{Bond, Brick};
 use super::pulse::Axis;
@@ -16,8 +15,18 @@ use mipless_codegen::moments::{Mode, Normal, Signal};
 /// The variance of a uniform number in [0, 1].
 const VARIANCE: f32 = 1.0 / 12.0;
 
-/// In unit cells: above the first the sum fades, at the second it has faded.
-const FADE: [f32; 2] = [2.8, 3.5];
+/// Standard deviations along a coordinate, in unit cells, without what the coordinates share: above
+/// the first the sum fades, at the second it has faded.
+const ALONE: [f32; 2] = [1.1, 1.6];
+
+/// The same for √det Σ, the area of the whole footprint.
+const AREA: [f32; 2] = [0.5, 1.0];
+
+/// How far a footprint reaches, in standard deviations.
+const REACH: f32 = 3.8;
+
+/// The most copies along a coordinate.
+const MOST: f32 = 16.0;
 
 /// Sums of w(r − ½) and derivatives, and of w(r − ½)² and w.
 const SUMS: [&str; 8] = ["value", "dx", "dy", "dxx", "dxy", "dyy", "square", "weight"];
@@ -64,6 +73,12 @@ pub(crate) fn numbered(
     let zero = b.f32(0.0);
     let mut captures = vec![place[0], place[1]];
     captures.extend(taps.captures());
+    let [xx, xy, yy] = spread.covariance;
+    let (both, cross) = (b.mul(xx, yy), b.square(xy));
+    let area = b.sub(both, cross);
+    let area = b.max(area, zero);
+    let area = b.sqrt(area);
+    captures.push(faded(b, area, AREA));
     captures.extend([cells[0], cells[1], seed]);
     captures.extend(fixed.is_none().then_some(offset));
     let sums = b.fold(&tap, taps.count, &[zero; SUMS.len() + 1], &captures);
@@ -169,21 +184,16 @@ fn share(b: &mut Builder, low: Value, high: Value, inverse: Value) -> [Value; 3]
     [value, slope, b.mul(bend, inverse)]
 }
 
-/// Where a window starts, from the mean's distance from a brick, and how many copies it has.
-fn window(b: &mut Builder, from: Value, sd: Value) -> [Value; 2] {
-    let most = b.f32(FADE[1]);
-    let sd = b.min(sd, most);
-    let reach = b.scale(sd, -4.0);
-    let reach = b.floor(reach);
-    let minus = b.f32(-1.0);
-    // −⌊−4 σ⌋ copies on each side, at least one.
-    let reach = b.min(reach, minus);
-    let twice = b.scale(reach, -2.0);
-    let count = b.offset(twice, 1.0);
-    let half = b.scale(count, -0.5);
-    let start = b.add(from, half);
-    let start = b.offset(start, 1.0);
-    [b.floor(start), count]
+/// The first copy of a brick that the footprint reaches, from the mean's distance from a brick, and
+/// how many there are.
+fn window(b: &mut Builder, from: Value, half: Value, sd: Value) -> [Value; 2] {
+    let reach = b.scale(sd, REACH);
+    let reach = b.add(reach, half);
+    let (low, high) = (b.sub(from, reach), b.add(from, reach));
+    let (below, last) = (b.floor(low), b.floor(high));
+    let start = b.offset(below, 1.0);
+    let count = b.sub(last, below);
+    [start, b.clamp(count, 0.0, MOST)]
 }
 
 /// The copies of one brick along a row, the body of a fold: Σ w(r − ½), its derivatives, and
@@ -296,11 +306,11 @@ fn row(module: &mut Module) -> FunctionRef {
     b.finish(module)
 }
 
-/// 1 below the first σ of [`FADE`], 0 above the second.
-fn faded(b: &mut Builder, sd: Value) -> Value {
-    let top = b.f32(FADE[1]);
-    let left = b.sub(top, sd);
-    let share = b.scale(left, 1.0 / (FADE[1] - FADE[0]));
+/// 1 below the first number, 0 above the second.
+fn faded(b: &mut Builder, x: Value, [from, to]: [f32; 2]) -> Value {
+    let top = b.f32(to);
+    let left = b.sub(top, x);
+    let share = b.scale(left, 1.0 / (to - from));
     b.clamp(share, 0.0, 1.0)
 }
 
@@ -315,6 +325,7 @@ fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let place = [b.param_f32("x"), b.param_f32("y")];
     let captures =
         ["along_x", "along_y", "sd_x", "sd_y", "start", "step"].map(|name| b.param_f32(name));
+    let kept = b.param_f32("kept");
     let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
     let seed = b.param("seed", Type::U32);
     let offset = offset_parameter(&mut b, fixed);
@@ -322,13 +333,22 @@ fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let one = b.f32(1.0);
     let inverse = axes.map(|Axis { sd, .. }| b.div(one, sd));
     let zero = b.f32(0.0);
+    let (fx, fy) = (
+        faded(&mut b, axes[0].sd, ALONE),
+        faded(&mut b, axes[1].sd, ALONE),
+    );
+    let fade = b.mul(fx, fy);
+    let fade = b.mul(fade, kept);
+    let gone = b.le(fade, zero);
     let mut sums = [zero; SUMS.len()];
     for (i, brick) in bond.bricks(&mut b, offset).iter().enumerate() {
         let (centre, size) = in_cells(&mut b, bond, brick);
         let from = [0, 1].map(|k| b.sub(axes[k].mean, centre[k]));
-        let [[start_x, count_x], [start_y, count_y]] =
-            [0, 1].map(|k| window(&mut b, from[k], axes[k].sd));
         let half = size.map(|size| b.f32(0.5 * size));
+        let [[start_x, count_x], [start_y, count_y]] =
+            [0, 1].map(|k| window(&mut b, from[k], half[k], axes[k].sd));
+        // What has faded is not summed.
+        let count_y = b.select(gone, zero, count_y);
         let which = b.u32((i as u32).wrapping_mul(0x85eb_ca6b));
         let captures = [
             from[0], from[1], half[0], half[1], start_x, start_y, count_x, inverse[0], inverse[1],
@@ -341,8 +361,6 @@ fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
             *sum = b.add(*sum, part);
         }
     }
-    let (fx, fy) = (faded(&mut b, axes[0].sd), faded(&mut b, axes[1].sd));
-    let fade = b.mul(fx, fy);
     let weighted = b.mul(weight, fade);
     let total = b.add(total, weight);
     b.result("weights", total);
