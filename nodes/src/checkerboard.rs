@@ -23,7 +23,7 @@ static SPEC: NodeSpec = NodeSpec {
             Given the part of the footprint that both coordinates share, they are independent \
             Gaussians and each wave has its closed form (a sum of Φ over the edges up to σ = 0.4 \
             squares, three damped harmonics beyond); the shared part is integrated by the \
-            trapezoid rule, one node for a footprint along the axes and 27 for 8:1 at 45 degrees. \
+            trapezoid rule, one node for a footprint along the axes and 31 for 8:1 at 45 degrees. \
             Variance P(1 − P). Over a large footprint the mean is (color1 + color2)/2.",
         accuracy: "The mean is within 1e-5 of the difference of the colours for footprints along the \
             axes and within 2e-3 for rotated ones up to 10:1; longer ones are blurred across to \

@@ -58,7 +58,8 @@ static SPEC: NodeSpec = NodeSpec {
   "version": 1,
   "name": "kaleidoscope_example",
   "nodes": {
-    "kaleidoscope": { "type": "kaleidoscope", "inputs": { "segments": 7 } },
+    "tile": { "type": "repeat" },
+    "kaleidoscope": { "type": "kaleidoscope", "inputs": { "texcoord": { "node": "tile" }, "segments": 7 } },
     "grain": { "type": "noise2d", "inputs": { "texcoord": { "node": "kaleidoscope" }, "frequency": 9, "pivot": 0.5 } }
   },
   "outputs": { "out": { "node": "grain" } }

@@ -27,6 +27,7 @@ mod burn;
 mod ceil;
 mod cellnoise2d;
 mod checkerboard;
+mod circle;
 mod clamp;
 mod colorcorrect;
 mod colormap2d;
@@ -54,10 +55,13 @@ mod fractal2d;
 mod fractal3d;
 mod gabornoise2d;
 mod gain;
+mod gradientangular;
+mod gradientradial;
 mod grid;
 mod hardlight;
 mod hsvadjust;
 mod hsvtorgb;
+mod hexagon;
 mod ifequal;
 mod ifgreater;
 mod ifgreatereq;
@@ -65,6 +69,7 @@ mod invert;
 mod kaleidoscope;
 mod levels;
 mod lighten;
+mod line;
 mod linearlight;
 mod ln;
 mod luminance;
@@ -104,6 +109,7 @@ mod rotate2d;
 mod round;
 mod saturate;
 mod screen;
+mod shape;
 mod sign;
 mod sin;
 mod smoothmax;
@@ -122,6 +128,8 @@ mod swirl;
 mod switch;
 mod tan;
 mod texcoord;
+mod tiledcircles;
+mod tiledhexagons;
 mod trianglewave;
 mod turbulence2d;
 mod unpremult;
@@ -159,13 +167,21 @@ static CATALOGUE: &[NodeDef] = &[
     // Pattern.
     brick::DEF,
     checkerboard::DEF,
+    circle::DEF,
+    gradientangular::DEF,
+    gradientradial::DEF,
     grid::DEF,
+    hexagon::DEF,
+    line::DEF,
     ramp4::DEF,
     ramplr::DEF,
     ramptb::DEF,
+    shape::DEF,
     splitlr::DEF,
     splittb::DEF,
     stripes::DEF,
+    tiledcircles::DEF,
+    tiledhexagons::DEF,
     // Arithmetic.
     add::DEF,
     atan2::DEF,

@@ -2,8 +2,13 @@
 
 pub(crate) mod angle;
 pub(crate) mod bond;
+pub(crate) mod figure;
 pub(crate) mod pulse;
+pub(crate) mod random;
+pub(crate) mod region;
+pub(crate) mod sawtooth;
 pub(crate) mod separable;
 #[cfg(test)]
 mod tests;
+pub(crate) mod tiling;
 pub(crate) mod triangle;

@@ -24,7 +24,8 @@ static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "With R the rotation of `rotate2d`: for `SRT`, out = R((texcoord − pivot)/scale) − \
             offset + pivot; for `TRS`, out = R(texcoord − pivot − offset)/scale + pivot. Scale \
-            divides, so a scale of 2 makes the texture twice as large.",
+            divides, so a scale of 2 makes the texture twice as large. In MaterialX rotate has the \
+            opposite sign, as in `rotate2d`.",
         statistics: "With constant parameters, linear and exact: a position stays exactly Gaussian with \
             its footprint transformed. A varying rotation or scale goes through the closed forms \
             of `sin` and `divide` and a product, approximate.",

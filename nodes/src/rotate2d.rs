@@ -16,7 +16,9 @@ static SPEC: NodeSpec = NodeSpec {
     summary: "Turns a vector.",
     doc: Doc {
         computes: "out = (c x − s y, s x + c y) with c and s the cosine and sine of the amount. A \
-            texture that is read at turned coordinates appears turned the other way.",
+            texture that is read at turned coordinates appears turned the other way. MaterialX's \
+            node of this name has the opposite direction, (c x + s y, c y − s x): its amount is the \
+            negative of this one.",
         statistics: "By a constant angle, linear and exact: a position stays exactly Gaussian, with its \
             footprint turned. A varying angle goes through the closed forms of sine and cosine \
             and a product, as `sin` and `multiply` do.",

@@ -4,7 +4,7 @@
 //! m + w t + √(1 − ρ) (σ₁ε₁, ±σ₂ε₂), w = √ρ (σ₁, ±σ₂), with independent standard t, ε₁ and ε₂: given
 //! t, the mean of a product is the product of the means, in closed form. What is left is one
 //! integral over t of a function that is smooth at the scale √((1 − ρ)/ρ): the trapezoid rule at
-//! 1.5 of it, within ±3.6, is exact to 5e-4. An axis-aligned footprint needs one node.
+//! 1.5 of it, within ±4.1, is exact to 2e-4. An axis-aligned footprint needs one node.
 //!
 //! Correlations are limited to [`MOST_CORRELATED`]: 10:1 at 45 degrees. A longer footprint keeps its
 //! spread along both coordinates and is blurred across.
@@ -26,7 +26,7 @@ const WIDEST_STEP: f32 = 1.5;
 const SMOOTH_STEP: f32 = 1.5;
 
 /// Where the integral over t ends.
-const REACH: f32 = 3.6;
+const REACH: f32 = 4.1;
 
 /// A coefficient times at most one pulse a coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -151,8 +151,10 @@ pub(crate) fn filtered(
     let mean = b.clamp(field.mean, 0.0, 1.0);
     let mut field = Field { mean, ..field };
     if mode.spreads() {
-        let softness = (pattern.soft.as_ref()).map(|soft| soft.width);
-        field.rest = rest(b, &field, &spread, square.zip(softness));
+        field.rest = match (square, &pattern.soft) {
+            (Some(square), Some(soft)) => rest_of_ramps(b, &field, &spread, square, soft.width),
+            _ => rest_of_two(b, &field, &spread),
+        };
     }
     let signal = field.at(lower, position);
     finished_signal(lower, signal, sharp)
@@ -164,7 +166,7 @@ fn finished(lower: &mut Lower<'_>, value: Value, sharp: bool) -> Signal {
 }
 
 /// A sharp pattern takes two values, and every pattern bends.
-fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool) -> Signal {
+pub(crate) fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool) -> Signal {
     lower.algebra.bent = true;
     let b = lower.b();
     let binary = (sharp && !signal.is_certain(b)).then(|| [0.0, 1.0].map(|x| b.f32(x)));
@@ -174,26 +176,9 @@ fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool) -> Signal
     }
 }
 
-/// Var − |g|² − ½‖H‖². A sharp pattern is 0 or 1: its variance is P(1 − P). One with ramps has
-/// E[P²] − P², and no more than the ramps' linear response while the footprint lies within them.
-pub(crate) fn rest(
-    b: &mut Builder,
-    field: &Field,
-    spread: &Spread,
-    soft: Option<(Value, [Value; 2])>,
-) -> Value {
+/// What the response of a field to the footprint leaves of a variance: Var − |g|² − ½‖H‖², at least 0.
+pub(crate) fn rest(b: &mut Builder, field: &Field, spread: &Spread, variance: Value) -> Value {
     let [xx, xy, yy] = spread.covariance;
-    let one = b.f32(1.0);
-    let variance = match soft {
-        None => {
-            let other = b.sub(one, field.mean);
-            b.mul(field.mean, other)
-        }
-        Some((square, _)) => {
-            let squared = b.square(field.mean);
-            b.sub(square, squared)
-        }
-    };
     let [dx, dy] = field.gradient;
     let (px, py) = (b.dot(&[xx, xy], &[dx, dy]), b.dot(&[xy, yy], &[dx, dy]));
     let linear = b.dot(&[dx, dy], &[px, py]);
@@ -210,25 +195,46 @@ pub(crate) fn rest(
         rest = b.sub(rest, trace);
     }
     let zero = b.f32(0.0);
-    rest = b.max(rest, zero);
-    if let Some((_, [wide, high])) = soft {
-        // The response of a ramp is linear where the footprint lies within it.
-        let share = |b: &mut Builder, variance: Value, width: Value| {
-            let square = b.square(width);
-            let square = b.scale(square, 0.16);
-            let sum = b.add(variance, square);
-            let sum = b.offset(sum, 1e-12);
-            b.div(square, sum)
-        };
-        let (left, right) = (share(b, xx, wide), share(b, yy, high));
-        let within = b.mul(left, right);
-        let beyond = b.sub(one, within);
-        rest = b.mul(rest, beyond);
-    }
-    rest
+    b.max(rest, zero)
 }
 
-fn orders(mode: Mode) -> usize {
+/// The same of a pattern that is 0 or 1, whose variance is P(1 − P).
+pub(crate) fn rest_of_two(b: &mut Builder, field: &Field, spread: &Spread) -> Value {
+    let one = b.f32(1.0);
+    let other = b.sub(one, field.mean);
+    let variance = b.mul(field.mean, other);
+    rest(b, field, spread, variance)
+}
+
+/// The same of a pattern with ramps, from the mean of its square: no more than the ramps' linear
+/// response is left while the footprint lies within them.
+fn rest_of_ramps(
+    b: &mut Builder,
+    field: &Field,
+    spread: &Spread,
+    square: Value,
+    [wide, high]: [Value; 2],
+) -> Value {
+    let squared = b.square(field.mean);
+    let variance = b.sub(square, squared);
+    let rest = rest(b, field, spread, variance);
+    // 1 − (1 − f₁)(1 − f₂) with f = σ²/(σ² + (0.4 w)²).
+    let share = |b: &mut Builder, variance: Value, width: Value| {
+        let square = b.square(width);
+        let square = b.scale(square, 0.16);
+        let sum = b.add(variance, square);
+        let sum = b.offset(sum, 1e-12);
+        b.div(square, sum)
+    };
+    let [xx, _, yy] = spread.covariance;
+    let (left, right) = (share(b, xx, wide), share(b, yy, high));
+    let within = b.mul(left, right);
+    let one = b.f32(1.0);
+    let beyond = b.sub(one, within);
+    b.mul(rest, beyond)
+}
+
+pub(super) fn orders(mode: Mode) -> usize {
     match mode {
         Mode::Point | Mode::Naive | Mode::Ensemble => 1,
         Mode::Local => 3,
@@ -291,16 +297,19 @@ impl Taps {
         let ratio = b.scale(ratio, 1.0 / (SMOOTH_STEP * SMOOTH_STEP));
         let inverse = b.offset(ratio, 1.0 / (WIDEST_STEP * WIDEST_STEP));
         let inverse = b.sqrt(inverse);
-        let intervals = b.scale(inverse, 2.0 * REACH);
-        let intervals = b.floor(intervals);
+        // One node is always in the middle: as the footprint turns, nodes come and go where their
+        // weight is next to nothing.
+        let half = b.scale(inverse, REACH);
+        let half = b.floor(half);
         // Without a correlation there is nothing to integrate.
-        let least = b.f32(1e-3);
+        let least = b.f32(1e-4);
         let alone = b.lt(rho, least);
-        let intervals = b.select(alone, zero, intervals);
+        let half = b.select(alone, zero, half);
         let step = b.div(one, inverse);
-        let half = b.scale(intervals, -0.5);
         let start = b.mul(half, step);
-        let count = b.offset(intervals, 1.0);
+        let start = b.neg(start);
+        let count = b.scale(half, 2.0);
+        let count = b.offset(count, 1.0);
         let count = b.trunc_i(count);
         let count = b.cast_u(count);
         Self {

@@ -114,8 +114,7 @@ fn dense(text: &str, footprints: &[Footprint], points: usize) -> Vec<[f64; 2]> {
 
 /// The largest errors of mean and variance over the sizes, for round and turned footprints.
 fn errors<const N: usize>(text: &str, sizes: &[f32], methods: [Method; N]) -> [[[f64; 2]; 2]; N] {
-    let long = std::env::var_os("MIPLESS_LONG").is_some();
-    let (places, points) = if long { (12, 100_000) } else { (6, 20_000) };
+    let (places, points) = if is_long() { (12, 100_000) } else { (4, 8_000) };
     let mut worst = [[[0.0f64; 2]; 2]; N];
     for turned in [false, true] {
         for &size in sizes {
@@ -156,12 +155,18 @@ fn held(ty: &str, inputs: &Value, cell: f32, bounds: [[f64; 2]; 2]) {
     }
 }
 
-/// What the dense sums themselves may be off by.
-const DENSE: f64 = 4e-3;
+/// What the dense sums themselves may be off by: footprints of 8:1 meet many edges.
+fn tolerance() -> f64 {
+    if is_long() { 2.5e-3 } else { 1e-2 }
+}
+
+fn is_long() -> bool {
+    std::env::var_os("MIPLESS_LONG").is_some()
+}
 
 #[test]
 fn separable_patterns_are_filtered_exactly() {
-    let bound = [[DENSE, DENSE]; 2];
+    let bound = [[tolerance(); 2]; 2];
     held("checkerboard", &json!({ "uvtiling": [1, 1] }), 1.0, bound);
     for staggered in [false, true] {
         let inputs = json!({ "thickness": 0.2, "staggered": staggered });
@@ -173,7 +178,17 @@ fn separable_patterns_are_filtered_exactly() {
 fn bricks_are_filtered_exactly() {
     for bond in ["running", "english", "flemish", "herringbone", "basket"] {
         let inputs = json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": 0.15 });
-        held("brick", &inputs, 0.7, [[DENSE, DENSE]; 2]);
+        held("brick", &inputs, 0.7, [[tolerance(); 2]; 2]);
+    }
+}
+
+#[test]
+fn random_bricks_are_filtered_until_they_fade() {
+    for bond in ["running", "flemish", "herringbone"] {
+        let inputs =
+            json!({ "bond": bond, "columns": 1, "rows": 2, "output": "random", "seed": 3 });
+        held("brick", &inputs, 0.3, [[0.01; 2]; 2]);
+        held("brick", &inputs, 1.0, [[0.05; 2]; 2]);
     }
 }
 
@@ -181,7 +196,7 @@ fn bricks_are_filtered_exactly() {
 fn bevelled_bricks_have_their_mean_and_nearly_their_variance() {
     for bond in ["running", "herringbone"] {
         let inputs = json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": 0.1, "bevel": 0.3 });
-        held("brick", &inputs, 0.7, [[DENSE, 0.05]; 2]);
+        held("brick", &inputs, 0.7, [[tolerance(), 0.05]; 2]);
     }
 }
 
@@ -214,9 +229,9 @@ fn read_error(coordinate: &Value, size: f32, turned: bool) -> f64 {
         "outputs": { "out": { "node": "x" } }
     })
     .to_string();
-    let places = 40;
+    let places = 30;
     let footprints = footprints(size, turned, places);
-    let truth = dense(&graph, &footprints, 2000);
+    let truth = dense(&graph, &footprints, 1000);
     let found = &evaluated(&graph, Method::Local, &footprints)[0];
     let square = |(found, truth): (&f64, &[f64; 2])| (found - truth[0]).powi(2);
     let sum: f64 = found.iter().zip(&truth).map(square).sum();
@@ -237,6 +252,47 @@ fn ramps_and_splits_are_filtered_exactly() {
 }
 
 #[test]
+fn figures_are_filtered_exactly() {
+    let bound = [[tolerance(); 2]; 2];
+    for radius in [0.2, 0.5] {
+        let inputs = json!({ "center": [0.4, 0.6], "radius": radius });
+        held("circle", &inputs, 1.0, bound);
+        held("hexagon", &inputs, 1.0, bound);
+    }
+    held("shape", &json!({ "rotate": 20 }), 1.0, bound);
+    held(
+        "shape",
+        &json!({ "shape": "star", "inner": 0.3, "sides": 6 }),
+        1.0,
+        bound,
+    );
+    held("line", &json!({}), 1.0, bound);
+    let thin = json!({ "radius": 0.02, "point1": [0.9, 0.1], "point2": [0.2, 0.4] });
+    held("line", &thin, 1.0, bound);
+}
+
+#[test]
+fn tilings_are_filtered_exactly_unless_they_are_blurred_across() {
+    for (staggered, size) in [(false, 0.5), (true, 0.9), (false, 0.95)] {
+        let inputs = json!({ "size": size, "staggered": staggered });
+        for name in ["tiledcircles", "tiledhexagons"] {
+            held(name, &inputs, 1.0, [[tolerance(); 2], [0.01; 2]]);
+        }
+    }
+}
+
+#[test]
+fn gradients_around_a_centre_have_nearly_their_means() {
+    held("gradientradial", &json!({}), 0.5, [[0.03; 2], [0.09; 2]]);
+    held(
+        "gradientangular",
+        &json!({ "center": [-2, -3] }),
+        0.3,
+        [[0.02; 2]; 2],
+    );
+}
+
+#[test]
 fn coordinates_have_the_moments_that_their_pages_state() {
     held("mirror", &json!({}), 1.0, [[2e-3, 5e-3]; 2]);
     held("swirl", &json!({}), 0.025, [[0.02; 2], [0.07; 2]]);
@@ -249,7 +305,7 @@ fn what_reads_odd_coordinates_is_filtered_by_their_footprint() {
         ("mirror", 0.1),
         ("kaleidoscope", 0.15),
         ("swirl", 0.12),
-        ("repeat", 0.2),
+        ("repeat", 0.25),
         ("polar", 0.2),
     ] {
         let coordinate = json!({ "type": ty });

@@ -1,0 +1,148 @@
+//! One figure around a centre: 1 inside, 0 outside.
+
+use super::region::{Measure, Outline, Whitening, disc};
+use super::separable::{finished_signal, rest_of_two};
+use crate::componentwise::difference;
+use crate::noise::field::{Field, Spread};
+use mipless_codegen::ir::Value;
+use mipless_codegen::moments::{Mode, Signal};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::Node;
+
+/// What is drawn.
+pub(crate) enum Figure {
+    /// A disc of a radius.
+    Disc {
+        /// The radius.
+        radius: Value,
+    },
+    /// A polygon: A, B and E of its outline.
+    Polygon {
+        /// The outline.
+        outline: Outline,
+        /// A, B, E.
+        axes: [[Value; 2]; 3],
+    },
+    /// A polygon with another origin; a point belongs to it by its distance from the segment E.
+    Line {
+        /// The outline.
+        outline: Outline,
+        /// A, B, E.
+        axes: [[Value; 2]; 3],
+        /// The origin, from the centre.
+        from: [Value; 2],
+    },
+}
+
+/// The figure at `texcoord` around `center`.
+pub(crate) fn drawn(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    figure: impl FnOnce(&mut Lower<'_>) -> Figure,
+) -> Bundle {
+    let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
+    let position = [0, 1].map(|i| {
+        let from = difference(lower, &texcoord[i], &centre[i]);
+        from.flat(lower.b())
+    });
+    let figure = figure(lower);
+    let b = lower.b();
+    let certain = position.iter().all(|axis| axis.is_certain(b));
+    let back = [b.neg(position[0].mean), b.neg(position[1].mean)];
+    if lower.mode() == Mode::Point || certain {
+        let value = point(lower, &figure, back);
+        let signal = Signal::certain(lower.b(), value);
+        return vec![finished_signal(lower, signal, true)];
+    }
+    let spread = Spread::of(lower.b(), &position);
+    let measure = match &figure {
+        Figure::Disc { radius } => disc(lower, back, *radius, &spread),
+        Figure::Polygon { outline, axes } => polygon(lower, outline, back, axes, &spread),
+        Figure::Line {
+            outline,
+            axes,
+            from,
+        } => {
+            let b = lower.b();
+            let back = [b.add(back[0], from[0]), b.add(back[1], from[1])];
+            polygon(lower, outline, back, axes, &spread)
+        }
+    };
+    let field = sharp(lower, measure, &spread);
+    let signal = field.at(lower, &position);
+    vec![finished_signal(lower, signal, true)]
+}
+
+/// A measure as the field of a figure that is 0 or 1.
+pub(crate) fn sharp(lower: &mut Lower<'_>, measure: Measure, spread: &Spread) -> Field {
+    let mode = lower.mode();
+    let b = lower.b();
+    let zero = b.f32(0.0);
+    let [value, dx, dy, xx, xy, yy] = measure;
+    let slopes = matches!(mode, Mode::Local | Mode::Quad);
+    let bends = mode == Mode::Quad;
+    let mut field = Field {
+        mean: b.clamp(value, 0.0, 1.0),
+        gradient: [dx, dy].map(|v| if slopes { v } else { zero }),
+        hessian: [xx, xy, yy].map(|v| if bends { v } else { zero }),
+        rest: zero,
+    };
+    if mode.spreads() {
+        field.rest = rest_of_two(b, &field, spread);
+    }
+    field
+}
+
+fn polygon(
+    lower: &mut Lower<'_>,
+    outline: &Outline,
+    back: [Value; 2],
+    [a, c, e]: &[[Value; 2]; 3],
+    spread: &Spread,
+) -> Measure {
+    let key = format!("outline {outline:?}");
+    let function = lower.function(&key, |module| outline.function(module));
+    let b = lower.b();
+    let whitening = Whitening::of(b, spread.covariance);
+    outline.measure(b, &function, &whitening, [back, *a, *c, *e])
+}
+
+/// 1 inside, 0 outside.
+fn point(lower: &mut Lower<'_>, figure: &Figure, back: [Value; 2]) -> Value {
+    let b = lower.b();
+    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let inside = match figure {
+        Figure::Disc { radius } => {
+            let (distance, reach) = (b.dot(&back, &back), b.square(*radius));
+            b.lt(distance, reach)
+        }
+        Figure::Polygon {
+            outline,
+            axes: [a, c, e],
+        } => outline.holds(b, [back, *a, *c, *e]),
+        Figure::Line {
+            axes: [a, _, e],
+            from,
+            ..
+        } => {
+            // From the start of the segment, and how far along it.
+            let place = [0, 1].map(|k| {
+                let start = b.add(back[k], from[k]);
+                b.neg(start)
+            });
+            let square = b.dot(e, e);
+            let least = b.f32(1e-30);
+            let square = b.max(square, least);
+            let share = b.dot(&place, e);
+            let share = b.div(share, square);
+            let share = b.clamp(share, 0.0, 1.0);
+            let across = [0, 1].map(|k| {
+                let along = b.mul(share, e[k]);
+                b.sub(place[k], along)
+            });
+            let (distance, reach) = (b.dot(&across, &across), b.dot(a, a));
+            b.lt(distance, reach)
+        }
+    };
+    b.select(inside, one, zero)
+}
