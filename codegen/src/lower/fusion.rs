@@ -57,7 +57,9 @@ impl<'a> Compiler<'a> {
             literal: self.literal.clone(),
             functions: Default::default(),
             fused: Default::default(),
+            maps: Default::default(),
             levels: Default::default(),
+            library: self.library.clone(),
         }
     }
 }
