@@ -1,11 +1,13 @@
 //! `fractal2d`: a sum of octaves of lattice noise.
 
 use crate::noise::lattice::{self, Octaves};
-use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped};
+use crate::noise::source::{
+    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position, shaped, tiling,
+};
 use crate::noise2d::DEVIATION;
 use mipless_codegen::NodeDef;
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -28,6 +30,7 @@ static SPEC: NodeSpec = NodeSpec {
         AMPLITUDE,
         PIVOT,
         SEED,
+        PERIOD,
         KERNEL,
         PortSpec::new(
             "octaves",
@@ -56,8 +59,9 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::hard(0.0, 2.0).with_soft(0.0, 1.0)),
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian {
-        deviation: DEVIATION,
+    class: |inputs| {
+        let (octaves, lacunarity) = (inputs.number("octaves"), inputs.number("lacunarity"));
+        tiling(inputs, octaves, lacunarity, DEVIATION)
     },
     example: r#"{ "version": 1, "name": "smoke",
         "nodes": { "fractal2d": { "type": "fractal2d", "inputs": { "frequency": 4, "octaves": 5, "pivot": 0.5 } } },
@@ -73,7 +77,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
             lacunarity: lower.float(node, "lacunarity"),
             diminish: lower.float(node, "diminish"),
             seed: lower.integer(node, "seed"),
-            period: 0,
+            period: lower.integer(node, "period").max(0) as u32,
         };
         let position = position(lower, node);
         let field = lattice::filtered(lower, &position, octaves);
