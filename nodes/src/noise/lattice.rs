@@ -49,6 +49,25 @@ impl Octaves {
         self.period > 0
     }
 
+    /// How many octaves the footprint leaves, at most, and the variance of the others. Each is
+    /// finer than the one before: where one is gone, all that follow are. With y the smaller
+    /// eigenvalue of Σ/a² a footprint leaves no more than (1 + y)⁻³ of the variance.
+    fn left(self, b: &mut Builder, minor: Value) -> (Value, Value) {
+        let limit = WIDTH * WIDTH * (filtered::FADE[0].powf(-1.0 / 3.0) - 1.0);
+        let (none, one, zero) = (b.u32(0), b.u32(1), b.f32(0.0));
+        let (mut count, mut variance) = (none, zero);
+        for octave in 0..self.count as i32 {
+            let limit = b.f32(limit / self.lacunarity.powi(2 * octave));
+            let is_left = b.lt(minor, limit);
+            let step = b.select(is_left, one, none);
+            count = b.add_u(count, step);
+            let energy = b.f32(self.diminish.powi(2 * octave));
+            let energy = b.select(is_left, zero, energy);
+            variance = b.add(variance, energy);
+        }
+        (count, variance)
+    }
+
     /// The standard deviation of the sum.
     pub(crate) fn sd(self) -> f32 {
         (0..self.count as i32)
@@ -112,7 +131,14 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
             .map(|s| b.scale(s, 1.0 / (WIDTH * WIDTH)));
         captures.extend([b.add(major, minor), b.mul(major, minor)]);
     }
-    let count = b.u32(octaves.count);
+    let mut count = b.u32(octaves.count);
+    if mode.filters() {
+        let (left, gone) = octaves.left(b, spread.eigenvalues[1]);
+        count = left;
+        if mode.spreads() {
+            init[parts] = gone;
+        }
+    }
     let sums = b.fold(&octave, count, &init, &captures);
     let zero = b.f32(0.0);
     let at = |i: usize| if i < parts { sums[i] } else { zero };

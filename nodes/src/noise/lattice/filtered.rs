@@ -8,7 +8,7 @@ use mipless_codegen::moments::Mode;
 
 /// An octave that keeps less than the first share of its variance has faded to nothing, above the
 /// second it has not begun to.
-const FADE: [f32; 2] = [0.0007, 0.0025];
+pub(super) const FADE: [f32; 2] = [0.0007, 0.0025];
 
 /// The spread, in squared cells, up to which the three nearest rows or columns suffice, and from
 /// which on a fourth counts in full.
