@@ -39,7 +39,7 @@ static SPEC: NodeSpec = NodeSpec {
             a lattice point and 1.67 at the most; of the noise filtered by 0.2 cells 0.49 to 1.67, by \
             a third of a cell 0.83 to 1.36, by half a cell 0.96 to 1.09. Cost, in kernels: 3×3 \
             unfiltered; filtered, four columns across the footprint's longer side by three rows up \
-            to 0.12 cells, four up to 0.76, then 4.7 √(0.149 + σ²) up to 32, none once it has \
+            to 0.12 cells, four up to 0.78, then 4.6 √(0.149 + σ²) up to 32, none once it has \
             faded (1.24 cells, if round).",
         references: "Perlin 1985 (lattice noise); Bruneton & Neyret 2012 §2.2; Hermite–Parseval \
             identity for the remainder.",

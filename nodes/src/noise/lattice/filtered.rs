@@ -15,7 +15,7 @@ pub(super) const FADE: [f32; 2] = [0.0007, 0.0025];
 const FOURTH: [f32; 2] = [0.0144, 0.04];
 
 /// Rows are summed up to this many times √T₂₂ from the position.
-const REACH: f32 = 2.35;
+const REACH: f32 = 2.3;
 
 /// How many derivatives of the noise a mode needs.
 pub(super) fn derivatives(mode: Mode) -> usize {
