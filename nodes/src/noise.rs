@@ -15,8 +15,6 @@ pub(crate) mod phasor;
 mod remainder;
 pub(crate) mod ridge;
 pub(crate) mod source;
-pub(crate) mod source;
-pub(crate) mod spectral;
 pub(crate) mod spectral;
 pub(crate) mod volume;
 pub(crate) mod worley;

@@ -8,10 +8,6 @@ pub const F32_AGREES: f64 = 1e-5;
 /// The share of pixels that need not agree with the oracle: those that an edge runs through.
 pub const LEFT_OUT: f64 = 0.01;
 
-/// The same for samples of the pixel: towards the horizon a pixel is a hundred units of texture space
-/// long, and the place of a sample in it has a rounding of 4e-6 units, which is no error of the mean.
-pub const LEFT_OUT_OF_SAMPLES: f64 = 0.05;
-
 /// The largest difference between a device and the CPU over the pixels that agree with the oracle,
 /// relative to max(1, |x|). WGSL lets a device be off by 2.5 units in the last place in a division,
 /// by 3 + 2|x| in exp and by 2⁻¹¹ absolutely in sin and cos; the devices met so far stay a hundred

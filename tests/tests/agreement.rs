@@ -12,7 +12,7 @@ use mipless_runtime::image::Image;
 use mipless_runtime::job::Job;
 use mipless_runtime::view::{Flat, Plane, Size, View};
 use mipless_tests::case::{Case, all};
-use mipless_tests::tolerance::{DEVICE, F32_AGREES, LEFT_OUT, LEFT_OUT_OF_SAMPLES};
+use mipless_tests::tolerance::{DEVICE, F32_AGREES, LEFT_OUT};
 use mipless_tests::{METHODS, asked, name_of};
 use std::sync::Arc;
 
@@ -109,14 +109,7 @@ fn oracle(case: &Case, method: Method) -> Result<(), Failed> {
             view.name()
         );
         report(&line);
-        let sampled = matches!(method, Method::Supersample(_));
-        if share
-            > if sampled {
-                LEFT_OUT_OF_SAMPLES
-            } else {
-                LEFT_OUT
-            }
-        {
+        if share > LEFT_OUT {
             failures.push(line);
         }
     }

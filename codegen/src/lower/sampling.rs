@@ -2,11 +2,14 @@
 
 use super::entry::{finish, finite, footprint_function, graph_function, guarded, places};
 use super::{Arguments, Compiler, Options, PixelFilter};
+use crate::float::Float;
 use crate::ir::{Builder, Module, Type as Scalar, Value};
 use crate::moments::Mode;
+use std::iter;
+use std::sync::LazyLock;
 
 /// Mean (and variance) of points of the pixel filter: the R2 sequence (Roberts 2018) in integers,
-/// shifted by a hash of the pixel, warped to the filter. Means and squared deviations accumulate by
+/// shifted by a hash of the pixel, warped to the filter along each axis. Means and squared deviations accumulate by
 /// Welford's recurrence.
 pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &str, samples: u32) {
     let moments = compiler.options.moments;
@@ -20,6 +23,8 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     let outputs = point.results.len();
     let state_length = if moments { 2 * outputs } else { outputs };
 
+    let table = module.table("sample_offsets", offsets(compiler.options.filter));
+
     let mut b = Builder::new("sample", "One more sample.");
     let index = b.param("index", Scalar::U32);
     let state: Vec<Value> = (0..state_length)
@@ -30,7 +35,7 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
         b.param("shift_y", Scalar::U32),
     );
     let arguments = Arguments::declare(&mut b, compiler.graph);
-    let [x, y] = offset(&mut b, compiler.options.filter, index, [shift_x, shift_y]);
+    let [x, y] = offset(&mut b, table, index, [shift_x, shift_y]);
     let mut all = arguments.all();
     displace(&mut b, compiler, &mut all, [x, y]);
     for place in places(compiler.graph) {
@@ -92,50 +97,91 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
     b.finish(module);
 }
 
-/// Moves the position of a graph's arguments by (x, y) pixels. The offset's own integer part joins
-/// the cell, or the fraction would lose its detail.
+/// Moves the position of a graph's arguments by (x, y) pixels. Pixels may be hundreds of units long:
+/// their integer parts join the cell, and a product with a number of 12 significant bits is made of
+/// two exact ones.
 fn displace(b: &mut Builder, compiler: &Compiler<'_>, all: &mut [Value], pixels: [Value; 2]) {
     for place in places(compiler.graph) {
         let right = place.changes().start;
         for axis in 0..place.axes {
-            let changes = [all[right + axis], all[right + place.axes + axis]];
-            let step = b.dot(&pixels, &changes);
-            let whole = b.floor(step);
-            let fraction = b.sub(step, whole);
-            let whole = b.trunc_i(whole);
             let (cell, rest) = (place.cell(axis), place.fraction(axis));
-            all[cell] = b.add_i(all[cell], whole);
-            all[rest] = b.add(all[rest], fraction);
+            let changes = [all[right + axis], all[right + place.axes + axis]];
+            for (&pixels, length) in pixels.iter().zip(changes) {
+                let high = b.high(length);
+                let low = b.sub(length, high);
+                for part in [high, low] {
+                    let step = b.mul(pixels, part);
+                    let whole = b.floor(step);
+                    let fraction = b.sub(step, whole);
+                    let whole = b.trunc_i(whole);
+                    all[cell] = b.add_i(all[cell], whole);
+                    all[rest] = b.add(all[rest], fraction);
+                }
+            }
         }
     }
 }
 
-/// The offset of a sample inside the pixel, in pixels.
-fn offset(b: &mut Builder, filter: PixelFilter, index: Value, shift: [Value; 2]) -> [Value; 2] {
+/// Bits of a sample's place along one axis. With so few, and 12 significant ones of the offset, a
+/// sample lies at the same place in f32 and f64.
+const PLACES: u32 = 12;
+
+/// The offset of a sample inside the pixel, in pixels; `offsets` is the table of [`offsets`].
+fn offset(b: &mut Builder, offsets: u32, index: Value, shift: [Value; 2]) -> [Value; 2] {
     // 2³² divided by the plastic number and by its square.
     let uniform = [0xc13f_a9a9u32, 0x91e1_0da5].map(|step| b.u32(step));
-    let mut unit = [0, 1].map(|i| {
+    [0, 1].map(|i| {
         let walked = b.mul_u(index, uniform[i]);
         let place = b.add_u(walked, shift[i]);
-        let by = b.u32(8);
-        let leading = b.shr_u(place, by);
-        let number = b.float_u(leading);
-        let number = b.scale(number, 1.0 / (1u32 << 24) as f32);
-        b.offset(number, 0.5 / (1u32 << 24) as f32)
-    });
-    match filter {
-        PixelFilter::Box => unit.map(|u| b.offset(u, -0.5)),
-        PixelFilter::Gaussian(sd) => {
-            // Box–Muller: low discrepancy survives, since radius and angle are monotone in u.
-            let log = b.ln(unit[0]);
-            let square = b.scale(log, -2.0 * sd * sd);
-            let radius = b.sqrt(square);
-            unit[1] = b.offset(unit[1], -0.5);
-            let angle = b.scale(unit[1], std::f32::consts::TAU);
-            let (sine, cosine) = (b.sin(angle), b.cos(angle));
-            [b.mul(radius, cosine), b.mul(radius, sine)]
+        let by = b.u32(32 - PLACES);
+        let place = b.shr_u(place, by);
+        b.load(offsets, place)
+    })
+}
+
+/// The means of intervals of equal weight of the normal distribution.
+static NORMAL: LazyLock<Vec<f64>> = LazyLock::new(|| {
+    let count = 1_u32 << PLACES;
+    let inner = (1..count).map(|k| quantile(f64::from(k) / f64::from(count)));
+    let inner = inner.map(|z| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt());
+    let edges: Vec<f64> = iter::once(0.0).chain(inner).chain([0.0]).collect();
+    let means = edges.windows(2).map(|e| f64::from(count) * (e[0] - e[1]));
+    means.collect()
+});
+
+/// The offsets, in pixels, that stand for intervals of equal weight of the pixel filter along one
+/// axis: their means, to 12 significant bits.
+fn offsets(filter: PixelFilter) -> Vec<f32> {
+    let count = 1_u32 << PLACES;
+    let means: Vec<f64> = match filter {
+        PixelFilter::Box => (0..count)
+            .map(|k| (f64::from(k) + 0.5) / f64::from(count) - 0.5)
+            .collect(),
+        PixelFilter::Gaussian(sd) => NORMAL.iter().map(|z| z * f64::from(sd)).collect(),
+    };
+    means.into_iter().map(|x| (x as f32).high()).collect()
+}
+
+/// The standard score below which the share `p` of a normal distribution lies, 0 < p < 1: Newton's
+/// iteration from the middle, where it converges from one side.
+fn quantile(p: f64) -> f64 {
+    let mut z = 0.0_f64;
+    for _ in 0..60 {
+        let density = (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
+        // Φ(z) = ½ + φ(z) (z + z³/3 + z⁵/(3·5) + …).
+        let (mut term, mut sum, mut odd) = (z, 0.0, 1.0);
+        while f64::abs(term) > 1e-17 {
+            sum += term;
+            odd += 2.0;
+            term *= z * z / odd;
+        }
+        let step = (0.5 + density * sum - p) / density;
+        z -= step;
+        if step.abs() < 1e-13 {
+            break;
         }
     }
+    z
 }
 
 /// The nodes (x, y) and weights of a split rule, for a unit Gaussian, with the largest share of the
@@ -270,4 +316,33 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
     captures.extend(&arguments);
     let state = b.fold(&part, count, &vec![zero; length], &captures);
     finish(module, b, &quad, &state);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_normal_distribution() {
+        // Abramowitz & Stegun, table 26.5.
+        for (p, z) in [(0.5, 0.0), (0.975, 1.959_963_985), (0.001, -3.090_232_306)] {
+            assert!((quantile(p) - z).abs() < 1e-8, "{p}: {}", quantile(p));
+        }
+    }
+
+    #[test]
+    fn offsets_have_the_moments_of_the_filter_and_12_bits() {
+        for (filter, wanted) in [
+            (PixelFilter::Gaussian(0.5), 0.25),
+            (PixelFilter::Box, 1.0 / 12.0),
+        ] {
+            let all = offsets(filter);
+            let n = all.len() as f64;
+            let mean = all.iter().map(|&x| f64::from(x)).sum::<f64>() / n;
+            let square = all.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / n;
+            assert!(mean.abs() < 1e-6, "{filter:?}: {mean}");
+            assert!((square / wanted - 1.0).abs() < 1e-3, "{filter:?}: {square}");
+            assert!(all.iter().all(|x| x.to_bits() & 0xfff == 0), "{filter:?}");
+        }
+    }
 }

@@ -45,10 +45,62 @@ pub(crate) struct Octaves {
     pub(crate) period: u32,
 }
 
+/// The octaves that a footprint leaves.
+#[derive(Clone, Copy)]
+pub(super) struct Left {
+    /// How many whole ones.
+    count: Value,
+    /// 1 if the last, fractional one is left, else 0.
+    last: Value,
+    /// The variance of the others.
+    gone: Value,
+}
+
 impl Octaves {
     /// Whether the lattice repeats.
     pub(super) fn tiles(self) -> bool {
         self.period > 0
+    }
+
+    /// How many octaves the footprint leaves, at most, and the variance of the others. Each is
+    /// finer than the one before: where one is gone, all that follow are. With y the smaller
+    /// eigenvalue of Σ/a² a footprint leaves no more than (1 + y)⁻³ of the variance.
+    fn left(self, b: &mut Builder, minor: Value) -> Left {
+        let limit = WIDTH * WIDTH * (filtered::FADE[0].powf(-1.0 / 3.0) - 1.0);
+        let (none, one, zero) = (b.u32(0), b.u32(1), b.f32(0.0));
+        let mut left = Left {
+            count: none,
+            last: none,
+            gone: zero,
+        };
+        for octave in 0..=self.count as i32 {
+            let whole = octave < self.count as i32;
+            let share = if whole { 1.0 } else { self.part };
+            if share == 0.0 {
+                continue;
+            }
+            let limit = b.f32(limit / self.lacunarity.powi(2 * octave));
+            let is_left = b.lt(minor, limit);
+            let step = b.select(is_left, one, none);
+            if whole {
+                left.count = b.add_u(left.count, step);
+            } else {
+                left.last = step;
+            }
+            let energy = b.f32(share * share * self.diminish.powi(2 * octave));
+            let energy = b.select(is_left, zero, energy);
+            left.gone = b.add(left.gone, energy);
+        }
+        left
+    }
+
+    /// All octaves.
+    fn all(self, b: &mut Builder) -> Left {
+        Left {
+            count: b.u32(self.count),
+            last: b.u32(u32::from(self.part > 0.0)),
+            gone: b.f32(0.0),
+        }
     }
 
     /// The standard deviation of the sum.
@@ -67,10 +119,11 @@ impl Octaves {
         octave: &FunctionRef,
         position: &[Signal],
         captures: &[Value],
+        left: Option<Left>,
     ) -> Field {
         let mode = lower.mode();
         let parts = parts(mode);
-        let sums = self.fold(lower, octave, position, parts, captures);
+        let sums = self.fold(lower, octave, position, parts, captures, left);
         let zero = lower.b().f32(0.0);
         let at = |i: usize| if i < parts { sums[i] } else { zero };
         Field {
@@ -90,10 +143,15 @@ impl Octaves {
         position: &[Signal],
         parts: usize,
         captures: &[Value],
+        left: Option<Left>,
     ) -> Vec<Value> {
         let mode = lower.mode();
         let b = lower.b();
-        let mut init = vec![b.f32(0.0); parts + usize::from(mode.spreads())];
+        let left = left.unwrap_or_else(|| self.all(b));
+        let mut init = vec![b.f32(0.0); parts];
+        if mode.spreads() {
+            init.push(left.gone);
+        }
         for axis in position {
             // The lattice needs a cell and a fraction, whatever the position carries.
             let (cell, fraction) = match axis.cell {
@@ -114,13 +172,11 @@ impl Octaves {
         if self.tiles() {
             init.push(b.f32(self.period as f32));
         }
-        let count = b.u32(self.count);
-        let mut sums = b.fold(octave, count, &init, captures);
+        let mut sums = b.fold(octave, left.count, &init, captures);
         if self.part > 0.0 {
             // The state is that of the next octave.
             sums[amplitude] = b.scale(sums[amplitude], self.part);
-            let once = b.u32(1);
-            sums = b.fold(octave, once, &sums, captures);
+            sums = b.fold(octave, left.last, &sums, captures);
         }
         sums
     }
@@ -159,7 +215,8 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
             .map(|s| b.scale(s, 1.0 / (WIDTH * WIDTH)));
         captures.extend([b.add(major, minor), b.mul(major, minor)]);
     }
-    octaves.sum(lower, &octave, position, &captures)
+    let left = (mode.filters()).then(|| octaves.left(lower.b(), spread.eigenvalues[1]));
+    octaves.sum(lower, &octave, position, &captures, left)
 }
 
 /// The part of an octave's state that goes from octave to octave: position, frequency, amplitude

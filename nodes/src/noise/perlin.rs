@@ -131,7 +131,7 @@ pub(crate) fn filtered(
         captures.extend(spread.covariance);
         captures.extend(spread.eigenvalues);
     }
-    octaves.sum(lower, &octave, position, &captures)
+    octaves.sum(lower, &octave, position, &captures, None)
 }
 
 /// One octave of the filtered noise, the body of a fold.
