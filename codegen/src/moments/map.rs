@@ -2,7 +2,7 @@
 //!
 //! Level l holds E[T] under an isotropic Gaussian on a grid of at most σ_l/2, read linearly in
 //! position and in σ. A covariance Σ is read by five taps along its major axis: with s² =
-//! max(λ₂, λ₁/16), Σ ≈ s² I + (λ₁ − s²) v vᵀ, which blurs the minor axis too far and keeps the
+//! max(λ₂, λ₁/25), Σ ≈ s² I + (λ₁ − s²) v vᵀ, which blurs the minor axis too far and keeps the
 //! major variance (MATH §5; DESIGN §7). So any correlation of the two signals is filtered, where
 //! Grenier et al. 2022 tabulate axis-aligned ones alone.
 //!
@@ -206,7 +206,11 @@ impl Algebra {
                 let b = &mut self.b;
                 let (of_x, of_y) = (x.scale(b, m.slopes[0]), y.scale(b, m.slopes[1]));
                 let mut out = of_x.add(b, &of_y);
-                out.mean = b.clamp(m.mean, range[0], range[1]);
+                out.mean = if range.iter().all(|bound| bound.is_finite()) {
+                    b.clamp(m.mean, range[0], range[1])
+                } else {
+                    m.mean
+                };
                 out.cell = None;
                 out.range = range;
                 out.binary = None;

@@ -7,7 +7,7 @@ use crate::ir::{Builder, FunctionRef, Module, Value};
 const WIDEST: f32 = 1e6;
 
 /// s_min is at least this share of s_max.
-const ASPECT: f32 = 0.25;
+const ASPECT: f32 = 0.2;
 
 /// Nodes x and weights of the taps along the major axis: uniform nodes with Gaussian weights, of
 /// unit variance. Gauss–Hermite nodes err 1.5 times as much on maps with jumps (MATH §5).
