@@ -46,7 +46,7 @@ const CHAINS: [Chain; 12] = [
     Chain {
         name: "turbulence (4 octaves), smoothstep",
         fusion: 49.0,
-        nodes: r#"{0},{1},{2},{3},"a0":{"type":"absval","inputs":{"in":{"node":"n0"}}},"a1":{"type":"absval","inputs":{"in":{"node":"n1"}}},"a2":{"type":"absval","inputs":{"in":{"node":"n2"}}},"a3":{"type":"absval","inputs":{"in":{"node":"n3"}}},"h1":{"type":"multiply","inputs":{"in1":{"node":"a1"},"in2":0.5}},"h2":{"type":"multiply","inputs":{"in1":{"node":"a2"},"in2":0.25}},"h3":{"type":"multiply","inputs":{"in1":{"node":"a3"},"in2":0.125}},"t1":{"type":"add","inputs":{"in1":{"node":"a0"},"in2":{"node":"h1"}}},"t2":{"type":"add","inputs":{"in1":{"node":"t1"},"in2":{"node":"h2"}}},"t":{"type":"add","inputs":{"in1":{"node":"t2"},"in2":{"node":"h3"}}},"o":{"type":"smoothstep","inputs":{"in":{"node":"t"},"low":0.9,"high":2.1}}"#,
+        nodes: r#"{0},{1},{2},{3},"a0":{"type":"absval","inputs":{"in":{"node":"n0"}}},"a1":{"type":"absval","inputs":{"in":{"node":"n1"}}},"a2":{"type":"absval","inputs":{"in":{"node":"n2"}}},"a3":{"type":"absval","inputs":{"in":{"node":"n3"}}},"h1":{"type":"multiply","inputs":{"in1":{"node":"a1"},"in2":0.5}},"h2":{"type":"multiply","inputs":{"in1":{"node":"a2"},"in2":0.25}},"h3":{"type":"multiply","inputs":{"in1":{"node":"a3"},"in2":0.125}},"t1":{"type":"add","inputs":{"in1":{"node":"a0"},"in2":{"node":"h1"}}},"t2":{"type":"add","inputs":{"in1":{"node":"t1"},"in2":{"node":"h2"}}},"t":{"type":"add","inputs":{"in1":{"node":"t2"},"in2":{"node":"h3"}}},"o":{"type":"smoothstep","inputs":{"in":{"node":"t"},"low":0.6,"high":2.4}}"#,
     },
     Chain {
         name: "turbulence, step",
