@@ -188,7 +188,8 @@ fn node(spec: &NodeSpec) -> Value {
     let ports: Map<String, Value> = ports.collect();
     let output = match spec.output {
         OutputType::Exactly(ty) => ty.name(),
-        OutputType::Widest => "the widest of the inputs",
+        OutputType::Widest | OutputType::Whole => "the widest of the inputs",
+        OutputType::Named(_) => "the type that is named",
         OutputType::Stops => "the type of the stops",
     };
     let category: Category = spec.category;

@@ -194,8 +194,13 @@ impl PortSpec {
 pub enum OutputType {
     /// This type.
     Exactly(Type),
-    /// The widest of the [`PortType::Any`] inputs.
+    /// The widest of the [`PortType::Any`] inputs; each component comes from the same components of
+    /// the inputs alone.
     Widest,
+    /// The widest of the [`PortType::Any`] inputs, whose components act on one another.
+    Whole,
+    /// The type that the [`PortType::Choice`] input of this name names.
+    Named(&'static str),
     /// The type of the values of the [`PortType::Stops`] input.
     Stops,
 }
@@ -245,6 +250,10 @@ pub trait InputView {
     fn flag(&self, port: &str) -> bool;
     /// The chosen name of a uniform port.
     fn choice(&self, port: &str) -> &str;
+    /// The number of a uniform port.
+    fn number(&self, port: &str) -> f32;
+    /// The stops of a uniform port, as places and the means of their values' components.
+    fn stops(&self, port: &str) -> Vec<[f32; 2]>;
 }
 
 /// The node's class rule.

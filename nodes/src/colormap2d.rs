@@ -4,8 +4,8 @@ use mipless_codegen::ir::{Builder, Module, Type as Scalar, Value};
 use mipless_codegen::moments::{Domain, Piecewise, Shape, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Stops,
-    Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
+    Stops, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {

@@ -112,7 +112,8 @@ fn range_text(port: &PortSpec) -> String {
 fn output_text(output: OutputType) -> &'static str {
     match output {
         OutputType::Exactly(ty) => ty.name(),
-        OutputType::Widest => "the widest of the inputs'",
+        OutputType::Widest | OutputType::Whole => "the widest of the inputs'",
+        OutputType::Named(_) => "the type that is named",
         OutputType::Stops => "that of the stops' values",
     }
 }
@@ -136,7 +137,8 @@ fn describe_node(def: &NodeDef) -> Value {
         .collect();
     let output = match spec.output {
         OutputType::Exactly(ty) => ty.name(),
-        OutputType::Widest => "widest",
+        OutputType::Widest | OutputType::Whole => "widest",
+        OutputType::Named(_) => "named",
         OutputType::Stops => "stops",
     };
     // An example that is no JSON would fail the tests; tools then get its text.

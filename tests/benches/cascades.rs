@@ -107,8 +107,10 @@ macro_rules! ridged {
         )
     };
 }
-const RIDGED: &str = ridged!(r#""o":{"type":"multiply","inputs":{"in1":{"node":"t"},"in2":0.5714}}"#);
-const STEPPED_RIDGED: &str = ridged!(r#""o":{"type":"step","inputs":{"in":{"node":"t"},"edge":0.6}}"#);
+const RIDGED: &str =
+    ridged!(r#""o":{"type":"multiply","inputs":{"in1":{"node":"t"},"in2":0.5714}}"#);
+const STEPPED_RIDGED: &str =
+    ridged!(r#""o":{"type":"step","inputs":{"in":{"node":"t"},"edge":0.6}}"#);
 
 impl Chain {
     /// The texture with noises of this seed; the n-th noise of a sum of octaves is 2ⁿ times as fine.

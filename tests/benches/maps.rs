@@ -11,8 +11,8 @@ use mipless_codegen::ir::{Builder, Program, Value};
 use mipless_codegen::moments::Domain;
 use mipless_codegen::{Bundle, Lower, NodeDef, compile};
 use mipless_graph::{
-    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Type, check, load,
+    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, PortSpec,
+    PortType, Type, check, load,
 };
 use rayon::prelude::*;
 
@@ -34,9 +34,25 @@ static WAVES: NodeSpec = NodeSpec {
         references: "",
     },
     inputs: &[
-        PortSpec::new("in1", PortType::Exactly(Type::Float), Default::Float(0.0), ""),
-        PortSpec::new("in2", PortType::Exactly(Type::Float), Default::Float(0.0), ""),
-        PortSpec::new("seed", PortType::Exactly(Type::Integer), Default::Integer(0), "").uniform(),
+        PortSpec::new(
+            "in1",
+            PortType::Exactly(Type::Float),
+            Default::Float(0.0),
+            "",
+        ),
+        PortSpec::new(
+            "in2",
+            PortType::Exactly(Type::Float),
+            Default::Float(0.0),
+            "",
+        ),
+        PortSpec::new(
+            "seed",
+            PortType::Exactly(Type::Integer),
+            Default::Integer(0),
+            "",
+        )
+        .uniform(),
     ],
     output: OutputType::Exactly(Type::Color3),
     class: |_| Behaviour::Function,
@@ -50,9 +66,13 @@ fn waves(lower: &mut Lower<'_>, node: &Node) -> Bundle {
         bounds: [[0.0, 1.0]; 2],
         periodic: true,
     };
-    lower.map(node, [&x, &y], domain, &[[0.0, 1.0]; 3], move |b, _, place| {
-        (0..3).map(|i| channel(b, place, 3 * seed + i)).collect()
-    })
+    lower.map(
+        node,
+        [&x, &y],
+        domain,
+        &[[0.0, 1.0]; 3],
+        move |b, _, place| (0..3).map(|i| channel(b, place, 3 * seed + i)).collect(),
+    )
 }
 
 /// ½ plus eight waves of up to five periods, a fourteenth high each: in [0, 1] but for rounding.
@@ -177,7 +197,11 @@ impl Gaussian {
         let total: f64 = weights.iter().sum();
         let values = evaluate(point, &footprints);
         let weighted = |channel: &Vec<f32>| -> f64 {
-            let sum: f64 = channel.iter().zip(&weights).map(|(&v, w)| w * f64::from(v)).sum();
+            let sum: f64 = channel
+                .iter()
+                .zip(&weights)
+                .map(|(&v, w)| w * f64::from(v))
+                .sum();
             sum / total
         };
         values.iter().map(weighted).collect()
@@ -309,7 +333,12 @@ fn summary(errors: &[f64]) -> String {
     let mean = errors.iter().sum::<f64>() / n;
     let square = errors.iter().map(|e| e * e).sum::<f64>() / n;
     let largest = errors.iter().copied().fold(0.0, f64::max);
-    format!("{:.2} / {:.2} / {:.0}", 1e3 * mean, 1e3 * square.sqrt(), 1e3 * largest)
+    format!(
+        "{:.2} / {:.2} / {:.0}",
+        1e3 * mean,
+        1e3 * square.sqrt(),
+        1e3 * largest
+    )
 }
 
 fn main() {
@@ -324,8 +353,10 @@ fn tables() {
     println!("| maps | Gaussians | pyramid and five taps | 36 maps |");
     println!("|---|---|---|---|");
     let mut bytes = 0;
-    let kinds: [(&str, fn(u32) -> String); 2] =
-        [("Voronoi", |seed| regions(seed, "periodic")), ("smooth", smooth)];
+    let kinds: [(&str, fn(u32) -> String); 2] = [
+        ("Voronoi", |seed| regions(seed, "periodic")),
+        ("smooth", smooth),
+    ];
     for (kind, map) in kinds {
         let maps: Vec<_> = (1..=3)
             .map(|seed| {
@@ -338,7 +369,12 @@ fn tables() {
         for rotated in [false, true] {
             let (mut ours, mut theirs) = (Vec::new(), Vec::new());
             for (seed, (local, point, stack)) in maps.iter().enumerate() {
-                bytes = local.module.tables.iter().map(|t| 4 * t.data.len()).sum::<usize>();
+                bytes = local
+                    .module
+                    .tables
+                    .iter()
+                    .map(|t| 4 * t.data.len())
+                    .sum::<usize>();
                 let mut random = Random(seed as u64 + 100);
                 let gaussians: Vec<Gaussian> = (0..PLACES)
                     .map(|_| Gaussian::random(&mut random, rotated))
@@ -357,7 +393,11 @@ fn tables() {
                 }
             }
             let orientation = if rotated { "rotated" } else { "axis-aligned" };
-            println!("| {kind} | {orientation} | {} | {} |", summary(&ours), summary(&theirs));
+            println!(
+                "| {kind} | {orientation} | {} | {} |",
+                summary(&ours),
+                summary(&theirs)
+            );
         }
     }
     let stack = MAP_LEVELS * MAP_LEVELS * MAP_SIDE * MAP_SIDE * 3;
@@ -366,17 +406,17 @@ fn tables() {
 }
 
 fn noises() {
-    const METHODS: [Method; 4] = [
-        Method::Naive,
-        Method::Ensemble,
-        Method::Local,
-        Method::Quad,
-    ];
+    const METHODS: [Method; 4] = [Method::Naive, Method::Ensemble, Method::Local, Method::Quad];
     let heads: Vec<String> = METHODS.iter().map(ToString::to_string).collect();
-    println!("| map of two independent noises | s | {} |", heads.join(" | "));
+    println!(
+        "| map of two independent noises | s | {} |",
+        heads.join(" | ")
+    );
     println!("|---|---|{}", "---|".repeat(METHODS.len()));
-    let kinds: [(&str, fn(u32) -> String); 2] =
-        [("Voronoi", |seed| regions(seed, "clamp")), ("smooth", smooth)];
+    let kinds: [(&str, fn(u32) -> String); 2] = [
+        ("Voronoi", |seed| regions(seed, "clamp")),
+        ("smooth", smooth),
+    ];
     for (kind, map) in kinds {
         for size in [0.02f64, 0.05, 0.1, 0.2, 0.35, 0.5, 1.0] {
             let sums: Vec<Vec<f64>> = (1..=3u32)

@@ -84,7 +84,11 @@ fn inputs(random: &mut Random, spec: &NodeSpec, made: &[Made]) -> (Map<String, V
     }
     let ty = match spec.output {
         OutputType::Exactly(ty) => ty,
-        OutputType::Widest => widest,
+        OutputType::Widest | OutputType::Whole => widest,
+        OutputType::Named(port) => inputs[port]
+            .as_str()
+            .and_then(Type::by_name)
+            .expect("a choice names a type"),
         OutputType::Stops => stops,
     };
     (inputs, ty)

@@ -12,8 +12,8 @@
 
 use super::prune::without_dead_code;
 use super::{
-    Constant, Function, FunctionId, Inst, Module, Numbers, Op, Parameter, Table, Type, Value,
-    op::fold_constants,
+    Constant, Function, FunctionId, Inst, Library, Module, Numbers, Op, Parameter, Table, Type,
+    Value, op::fold_constants,
 };
 use hashbrown::{HashTable, hash_table::Entry};
 use rustc_hash::{FxBuildHasher, FxHashMap};
@@ -34,8 +34,10 @@ pub struct Builder {
     function: Function,
     /// The definitions by their hash: equal instructions are found, not stored twice.
     cons: HashTable<u32>,
-    /// The module's function that multiplies a position, where the module has it.
-    pub(crate) scale_position: Option<FunctionRef>,
+    /// The functions that the module's functions share, where it has any.
+    pub(super) library: Option<Library>,
+    /// Whether ops of real constants are computed here, in f32.
+    pub(super) folds: bool,
 }
 
 impl Builder {
@@ -52,8 +54,15 @@ impl Builder {
                 results: Vec::new(),
             },
             cons: HashTable::new(),
-            scale_position: None,
+            library: None,
+            folds: true,
         }
+    }
+
+    /// Shared rules become calls of functions of `library` from here on.
+    pub(crate) fn with_library(mut self, library: Library) -> Self {
+        self.library = Some(library);
+        self
     }
 
     /// A further parameter.
@@ -111,6 +120,11 @@ impl Builder {
         self.function.constant(value).and_then(Constant::as_f32)
     }
 
+    /// The constant that a value is, if it is one.
+    pub(super) fn constant_of(&self, value: Value) -> Option<Constant> {
+        self.function.constant(value)
+    }
+
     /// Whether a value is the f32 constant 0.
     pub fn is_zero(&self, value: Value) -> bool {
         self.as_constant(value) == Some(0.0)
@@ -137,7 +151,7 @@ impl Builder {
         }
     }
 
-    fn constant(&mut self, ty: Type, bits: u32) -> Value {
+    pub(super) fn constant(&mut self, ty: Type, bits: u32) -> Value {
         self.push(Inst::Const(Constant { ty, bits }), ty)
     }
 
@@ -205,6 +219,9 @@ impl Builder {
             let bits = [ca.bits, cb.map_or(0, |c| c.bits), cc.map_or(0, |c| c.bits)];
             let result = fold_constants(op, bits);
             let ty = op.info().result;
+            if ty == Type::F32 && !self.folds {
+                return None;
+            }
             if ty == Type::F32 {
                 let number = f32::from_bits(result);
                 return number.is_finite().then(|| self.f32(number));

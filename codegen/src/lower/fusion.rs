@@ -70,6 +70,7 @@ impl<'a> Compiler<'a> {
             maps: Default::default(),
             gains: Default::default(),
             levels: Default::default(),
+            library: self.library.clone(),
         }
     }
 }

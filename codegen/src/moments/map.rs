@@ -130,9 +130,7 @@ impl Map {
             let (baked, tried) = (Arc::clone(grid), Arc::clone(grid));
             let periodic = domain.periodic;
             let bake = move || bake::table(&baked, moment, periodic, &packing);
-            let error = move |table: &[f32]| {
-                bake::error(&tried, table, moment, periodic, &packing)
-            };
+            let error = move |table: &[f32]| bake::error(&tried, table, moment, periodic, &packing);
             let numbers = Numbers::lazy(total, bake).with_error(error);
             module.push_table(format!("{name}_{suffix}"), numbers)
         });
@@ -252,7 +250,6 @@ struct Moments {
     slopes: [Value; 2],
     distortion: Value,
 }
-
 
 #[cfg(test)]
 mod tests;

@@ -389,7 +389,8 @@ fn node(
     }
     let ty = match spec.output {
         OutputType::Exactly(ty) => ty,
-        OutputType::Widest => common,
+        OutputType::Widest | OutputType::Whole => common,
+        OutputType::Named(port) => named(spec, &inputs, port),
         OutputType::Stops => stops,
     };
     let pointer = template.node_pointer(index);
@@ -459,4 +460,14 @@ fn common_type(
         }
     }
     Some(common)
+}
+
+/// The type that a choice names.
+fn named(spec: &NodeSpec, inputs: &[Input], port: &str) -> Type {
+    let chosen = spec.input(port).map(|index| &inputs[index].source);
+    match chosen {
+        Some(Source::Literal(Literal::Text(name))) => Type::by_name(name),
+        _ => None,
+    }
+    .unwrap_or_else(|| panic!("`{port}` of {} names types", spec.name))
 }

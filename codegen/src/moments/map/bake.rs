@@ -50,7 +50,10 @@ impl Kernel {
             weights.iter_mut().for_each(|w| *w /= total);
             let first_moment: f64 = weights.iter().zip(&scores).map(|(w, z)| w * z).sum();
             // A constant has no slope.
-            let products = weights.iter().zip(&scores).map(|(w, z)| w * (z - first_moment));
+            let products = weights
+                .iter()
+                .zip(&scores)
+                .map(|(w, z)| w * (z - first_moment));
             scored.push((first, products.collect()));
             plain.push((first, weights));
         }
@@ -182,9 +185,12 @@ impl Samples {
                 let slopes_x = both(x1, y0, &self.values);
                 let squares = both(x0, y0, &self.squares);
                 // In f64 the difference of second moments is exact to 1e-16 of the square.
-                (squares.iter().zip(&means).zip(slopes_x.iter().zip(&slopes_y)))
-                    .map(|((q, m), (x, y))| (q - m * m - x * x - y * y).max(0.0).sqrt())
-                    .collect()
+                (squares
+                    .iter()
+                    .zip(&means)
+                    .zip(slopes_x.iter().zip(&slopes_y)))
+                .map(|((q, m), (x, y))| (q - m * m - x * x - y * y).max(0.0).sqrt())
+                .collect()
             }
         }
     }

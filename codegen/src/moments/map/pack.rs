@@ -62,7 +62,9 @@ impl Packing {
                 let (low, step) = (f64::from(header[2 * i]), f64::from(header[2 * i + 1]));
                 let most = (1u32 << self.bits[i]) - 1;
                 let code = if step > 0.0 {
-                    ((values[texel] - low) / step).round().clamp(0.0, most.into())
+                    ((values[texel] - low) / step)
+                        .round()
+                        .clamp(0.0, most.into())
                 } else {
                     0.0
                 };

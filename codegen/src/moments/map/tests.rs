@@ -62,7 +62,12 @@ fn moments(
     let moments = map.moments(&mut b, [x, y], [xx, xy, yy]);
     let m = &moments[0];
     let root = b.sqrt(m.distortion);
-    for (name, value) in [("mean", m.mean), ("x", m.slopes[0]), ("y", m.slopes[1]), ("root", root)] {
+    for (name, value) in [
+        ("mean", m.mean),
+        ("x", m.slopes[0]),
+        ("y", m.slopes[1]),
+        ("root", root),
+    ] {
         b.result(format!("result_{name}"), value);
     }
     b.finish(&mut module);
@@ -87,7 +92,13 @@ fn moments(
 
 /// Means over the domain, deviations from `least` to `most`, any ratio up to 16 and any direction.
 fn places(least: f64, most: f64) -> Vec<Place> {
-    let steps = [0.754_877_666, 0.569_840_291, 0.430_159_709, 0.671_043_607, 0.850_650_808];
+    let steps = [
+        0.754_877_666,
+        0.569_840_291,
+        0.430_159_709,
+        0.671_043_607,
+        0.850_650_808,
+    ];
     (1..=800)
         .map(|i| {
             let [u, v, size, ratio, turn] = steps.map(|step| (f64::from(i) * step).fract());
@@ -95,7 +106,11 @@ fn places(least: f64, most: f64) -> Vec<Place> {
             let minor = major * 16f64.powf(-ratio);
             let (s, c) = (std::f64::consts::PI * turn).sin_cos();
             let (p, q) = (major * major, minor * minor);
-            let covariance = [p * c * c + q * s * s, (p - q) * s * c, p * s * s + q * c * c];
+            let covariance = [
+                p * c * c + q * s * s,
+                (p - q) * s * c,
+                p * s * s + q * c * c,
+            ];
             ([0.2 + 0.6 * u, 0.2 + 0.6 * v], covariance)
         })
         .collect()
@@ -111,7 +126,11 @@ fn below(z: f64) -> f64 {
 }
 
 /// The mean and the largest error of each moment, slopes and roots in units of the map.
-fn errors(found: &[[f64; 4]], places: &[Place], exact: impl Fn(&Place) -> [f64; 4]) -> [[f64; 2]; 4] {
+fn errors(
+    found: &[[f64; 4]],
+    places: &[Place],
+    exact: impl Fn(&Place) -> [f64; 4],
+) -> [[f64; 2]; 4] {
     let mut out = [[0.0f64; 2]; 4];
     for (found, place) in found.iter().zip(places) {
         let exact = exact(place);
@@ -159,7 +178,10 @@ fn a_half_plane_is_that_of_the_normal_distribution() {
 
 /// ½ + ½ sin(2π·2x) cos(2π·y).
 fn waves(b: &mut Builder, [x, y]: [Value; 2]) -> Value {
-    let (x, y) = (b.scale(x, 2.0 * std::f32::consts::TAU), b.scale(y, std::f32::consts::TAU));
+    let (x, y) = (
+        b.scale(x, 2.0 * std::f32::consts::TAU),
+        b.scale(y, std::f32::consts::TAU),
+    );
     let (s, c) = (b.sin(x), b.cos(y));
     let product = b.mul(s, c);
     let half = b.scale(product, 0.5);
