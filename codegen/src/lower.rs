@@ -322,6 +322,7 @@ impl<'a> Lower<'a> {
                 "the catalogue of the graph"
             );
             self.algebra.bent = false;
+            self.algebra.knots = 0;
             self.algebra.period = None;
             let mut bundle = (definition.lower)(self, node);
             assert_eq!(

@@ -15,6 +15,9 @@ use std::sync::{Arc, LazyLock};
 
 /// The most functions that are not linear in one region.
 const LONGEST: u32 = 12;
+/// The most knots of a single function in closed form: with more the table takes less time (on a
+/// CPU, 8 for a colour and 6 for a number; `cargo bench -p mipless-tests --bench stops`).
+const MOST_KNOTS: u32 = 8;
 
 /// That a node is a function of one scalar signal alone.
 #[derive(Clone, Debug)]
@@ -105,7 +108,8 @@ impl Lower<'_> {
             });
         }
         let domain = before.domain()?;
-        if !self.algebra.bent || before.bends == 0 || !before.fixed {
+        let long = self.algebra.knots > MOST_KNOTS;
+        if !self.algebra.bent || (before.bends == 0 && !long) || !before.fixed {
             return None;
         }
         Some(self.tabulated(index, closed, node, &before, domain))
