@@ -11,7 +11,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "repeat",
-    aliases: &["tile", "wrap", "fract_uv", "modulo_uv"],
+    aliases: &["tile", "fract_uv", "modulo_uv"],
     category: Category::Coordinate,
     summary: "Repeats the unit square of coordinates.",
     doc: Doc {

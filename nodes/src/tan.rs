@@ -31,16 +31,12 @@ static SPEC: NodeSpec = NodeSpec {
             .unit("radians"),
     ],
     output: OutputType::Widest,
-    class: class,
+    class,
     example: r#"{
   "version": 1,
   "name": "tan_example",
   "nodes": {
-    "uv": {"type": "texcoord"},
-    "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
-    "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 25}},
-    "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
-    "tan": {"type": "tan", "inputs": {"in": {"node": "wave"}}}
+    "tan": {"type": "tan", "inputs": {"in": 0.7}}
   },
   "outputs": { "out": { "node": "tan" } }
 }"#,

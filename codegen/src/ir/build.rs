@@ -36,8 +36,6 @@ pub struct Builder {
     cons: HashTable<u32>,
     /// The functions that the module's functions share, where it has any.
     pub(super) library: Option<Library>,
-    /// Whether ops of real constants are computed here, in f32.
-    pub(super) folds: bool,
 }
 
 impl Builder {
@@ -55,7 +53,6 @@ impl Builder {
             },
             cons: HashTable::new(),
             library: None,
-            folds: true,
         }
     }
 
@@ -201,27 +198,45 @@ impl Builder {
         if let Some(value) = self.simplified(op, padded) {
             return value;
         }
-        if is_commutative(op) && padded[0] > padded[1] {
-            padded.swap(0, 1);
-            padded[2] = padded[0];
+        self.ordered(op, padded)
+    }
+
+    /// An op whose every bit is kept: constants alone are folded, and real results only with
+    /// `folds`, since they are computed in f32.
+    pub(super) fn exact(&mut self, op: Op, operands: [Value; 3], folds: bool) -> Value {
+        let ty = op.info().result;
+        if (folds || ty != Type::F32)
+            && let Some(bits) = self.folded(op, operands)
+            && (ty != Type::F32 || f32::from_bits(bits).is_finite())
+        {
+            return self.constant(ty, bits);
         }
-        self.push(Inst::Op(op, padded), info.result)
+        self.ordered(op, operands)
+    }
+
+    fn ordered(&mut self, op: Op, mut operands: [Value; 3]) -> Value {
+        if is_commutative(op) && operands[0] > operands[1] {
+            operands.swap(0, 1);
+            operands[2] = operands[0];
+        }
+        self.push(Inst::Op(op, operands), op.info().result)
+    }
+
+    /// The bits of an op of constants.
+    fn folded(&self, op: Op, operands: [Value; 3]) -> Option<u32> {
+        let count = op.info().operands.len();
+        let mut bits = [0; 3];
+        for (bits, &operand) in bits.iter_mut().zip(&operands[..count]) {
+            *bits = self.function.constant(operand)?.bits;
+        }
+        Some(fold_constants(op, bits))
     }
 
     /// What a simpler value an op is, if one of the laws applies.
     fn simplified(&mut self, op: Op, [a, b, c]: [Value; 3]) -> Option<Value> {
-        let operands = op.info().operands.len();
         let constants = [a, b, c].map(|v| self.function.constant(v));
-        if let [Some(ca), cb, cc] = constants
-            && (operands < 2 || cb.is_some())
-            && (operands < 3 || cc.is_some())
-        {
-            let bits = [ca.bits, cb.map_or(0, |c| c.bits), cc.map_or(0, |c| c.bits)];
-            let result = fold_constants(op, bits);
+        if let Some(result) = self.folded(op, [a, b, c]) {
             let ty = op.info().result;
-            if ty == Type::F32 && !self.folds {
-                return None;
-            }
             if ty == Type::F32 {
                 let number = f32::from_bits(result);
                 return number.is_finite().then(|| self.f32(number));

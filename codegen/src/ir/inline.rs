@@ -1,4 +1,5 @@
-//! Inlining calls: what two calls have in common is found, and what nobody reads is gone.
+//! Inlining calls: what two calls have in common is found, and what nobody reads is gone. Every
+//! result keeps its bits.
 
 use super::{Builder, Function, FunctionRef, Inst, Module, Value};
 use rustc_hash::FxHashMap;
@@ -17,11 +18,10 @@ impl Module {
         };
         for function in &self.functions {
             let mut b = Builder::new(function.name.clone(), function.doc.clone());
-            b.folds = folds;
             let parameters: Vec<Value> = (function.params.iter())
                 .map(|p| b.param(p.name.clone(), p.ty))
                 .collect();
-            let values = copied(&mut b, function, &parameters, &out);
+            let values = copied(&mut b, function, &parameters, &out, folds);
             for (name, value) in &function.results {
                 b.result(name.clone(), values[value.index()]);
             }
@@ -38,6 +38,7 @@ fn copied(
     function: &Function,
     arguments: &[Value],
     module: &Module,
+    folds: bool,
 ) -> Vec<Value> {
     // What calls and folds gave, by the value that stands for them.
     let mut given: FxHashMap<Value, Vec<Value>> = FxHashMap::default();
@@ -51,15 +52,18 @@ fn copied(
             Inst::Param(place) => arguments[*place as usize],
             Inst::Op(op, operands) => {
                 let count = op.info().operands.len();
-                let operands = operands.map(|v| values.get(v.index()).copied().unwrap_or(unused));
-                b.op(*op, &operands[..count])
+                let mut moved = [moved(&operands[0]); 3];
+                for (to, from) in moved.iter_mut().zip(&operands[..count]) {
+                    *to = values[from.index()];
+                }
+                b.exact(*op, moved, folds)
             }
             Inst::Load(table, index) => b.load(*table, moved(index)),
             Inst::Call(id, inputs) => {
                 let callee = module.function(*id);
                 let inputs: Vec<Value> = inputs.iter().map(moved).collect();
                 let results = if callee.insts.len() <= LARGEST {
-                    let inner = copied(b, callee, &inputs, module);
+                    let inner = copied(b, callee, &inputs, module, folds);
                     (callee.results.iter())
                         .map(|(_, v)| inner[v.index()])
                         .collect()

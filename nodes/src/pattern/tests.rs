@@ -248,7 +248,7 @@ fn what_reads_odd_coordinates_is_filtered_by_their_footprint() {
     for (ty, bound) in [
         ("mirror", 0.1),
         ("kaleidoscope", 0.15),
-        ("swirl", 0.1),
+        ("swirl", 0.12),
         ("repeat", 0.2),
         ("polar", 0.2),
     ] {
