@@ -18,7 +18,11 @@ fn main() {
     println!("| stops | values | closed form | table |");
     println!("|---|---|---|---|");
     let bare = time(r#""o":{"type":"invert","inputs":{"in":{"node":"n"}}}"#);
-    for (values, interpolation) in [("number", "linear"), ("colour", "constant"), ("colour", "linear")] {
+    for (values, interpolation) in [
+        ("number", "linear"),
+        ("colour", "constant"),
+        ("colour", "linear"),
+    ] {
         for count in [2, 4, 8, 12, 16, 24, 32, 64] {
             let stops: Vec<String> = (0..count)
                 .map(|i| {

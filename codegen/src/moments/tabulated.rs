@@ -420,7 +420,10 @@ mod tests {
         let cases: [(fn(f64) -> f64, f64); 3] = [
             (|x| 0.5 + 0.5 * (9.0 * x).sin(), 0.02),
             (|x| (10.0 * x).floor().rem_euclid(2.0), 0.1),
-            (|x| 0.5 + 0.5 * (9.0 * std::f64::consts::TAU * x).sin(), 0.07),
+            (
+                |x| 0.5 + 0.5 * (9.0 * std::f64::consts::TAU * x).sin(),
+                0.07,
+            ),
         ];
         for (f, bound) in cases {
             let sampled = Sampled::new(values(f), false);

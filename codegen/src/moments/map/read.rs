@@ -45,7 +45,11 @@ pub(super) fn bilinear(
     let start = b.add(start, x);
     let start = b.add(start, first);
     let corners = [0, 1].map(|row| {
-        let index = if row == 0 { start } else { b.add(start, stride) };
+        let index = if row == 0 {
+            start
+        } else {
+            b.add(start, stride)
+        };
         let index = b.trunc_i(index);
         let index = b.cast_u(index);
         let one = b.u32(1);
@@ -333,7 +337,13 @@ impl Map {
     }
 
     /// One moment's values at every tap, by component.
-    fn read(&self, b: &mut Builder, taps: &Taps, levels: &Levels, moment: Moment) -> Vec<Vec<Value>> {
+    fn read(
+        &self,
+        b: &mut Builder,
+        taps: &Taps,
+        levels: &Levels,
+        moment: Moment,
+    ) -> Vec<Vec<Value>> {
         let reader = &self.readers[moment as usize];
         let table = self.tables[moment as usize];
         (taps.places.iter())

@@ -76,7 +76,9 @@ pub(super) fn means(b: &mut Builder, map: &Map, [x, y]: [&Signal; 2]) -> Option<
         let part = map.part(b, [m, n], covariance);
         sums = Some(match sums {
             None => part,
-            Some(sums) => (sums.iter().zip(&part)).map(|(&p, &q)| b.add(p, q)).collect(),
+            Some(sums) => (sums.iter().zip(&part))
+                .map(|(&p, &q)| b.add(p, q))
+                .collect(),
         });
     }
     let sums = sums?;

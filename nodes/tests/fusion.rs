@@ -1,4 +1,4 @@
-//! Functions of two noises that closing node by node gets wrong even in the far field.
+//! Where functions of one and of two noises are read from tables, and how right that is far away.
 
 use mipless_codegen::cpu::{Footprint, eval_program};
 use mipless_codegen::{Method, Options, PixelFilter, compile};
@@ -104,4 +104,30 @@ fn what_closing_gets_right_has_no_table() {
     let exact = expected(|x, y| x.max(y).clamp(-1.0, 1.0));
     assert!((mean - exact).abs() < 0.01, "{mean}, not {exact}");
     assert_eq!(bytes, 0);
+}
+
+#[test]
+fn short_ramps_have_no_table_and_long_ones_a_small_one() {
+    let ramp = |count: i32| {
+        let stops: Vec<String> = (0..count)
+            .map(|i| {
+                let at = 4.0 * f64::from(i) / f64::from(count - 1) - 2.0;
+                format!(r#"{{"at":{at},"value":{}}}"#, i * 3 % 5)
+            })
+            .collect();
+        let node = format!(
+            r#""o":{{"type":"colorramp","inputs":{{"in":{{"node":"n0"}},"interpolation":"constant","stops":[{}]}}}}"#,
+            stops.join(",")
+        );
+        let exact = expected(|x, _| {
+            let below = ((x + 2.0) * f64::from(count - 1) / 4.0).floor() as i32;
+            f64::from(below.clamp(0, count - 1) * 3 % 5)
+        });
+        let (mean, bytes) = far(&node);
+        assert!((mean - exact).abs() < 0.02, "{count}: {mean}, not {exact}");
+        bytes
+    };
+    assert_eq!(ramp(4), 0);
+    let bytes = ramp(12);
+    assert!(bytes > 0 && bytes <= 10_000, "{bytes}");
 }
