@@ -116,16 +116,7 @@ pub(crate) fn sum(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
 
 /// X + M(Y − X): what X and Y share, and M with them, keeps its covariance.
 pub(crate) fn mixed(lower: &mut Lower<'_>, bg: &Signal, fg: &Signal, mask: &Signal) -> Signal {
-    let b = lower.b();
-    match (b.as_constant(mask.mean), mask.is_certain(b)) {
-        (Some(0.0), true) => return bg.clone(),
-        (Some(1.0), true) => return fg.clone(),
-        _ => {}
-    }
-    let bg = lower.algebra.expose(bg);
-    let across = fg.sub(lower.b(), &bg);
-    let part = product(lower, &across, mask);
-    bg.add(lower.b(), &part)
+    lower.algebra.mix(bg, fg, mask)
 }
 
 /// The means of a port that is a number to the node, one a component; a spread is ignored.

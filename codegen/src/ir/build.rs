@@ -28,12 +28,20 @@ pub struct FunctionRef {
     pub results: Vec<Type>,
 }
 
+/// A definition in the table of those that are known: with its hash, which tells most others apart
+/// without a look at them.
+#[derive(Debug)]
+struct Known {
+    hash: u64,
+    value: u32,
+}
+
 /// A function under construction.
 #[derive(Debug)]
 pub struct Builder {
     function: Function,
     /// The definitions by their hash: equal instructions are found, not stored twice.
-    cons: HashTable<u32>,
+    cons: HashTable<Known>,
     /// The functions that the module's functions share, where it has any.
     pub(super) library: Option<Library>,
 }
@@ -129,18 +137,17 @@ impl Builder {
 
     fn push(&mut self, inst: Inst, ty: Type) -> Value {
         let insts = &mut self.function.insts;
-        let hash = |inst: &Inst| FxBuildHasher.hash_one(inst);
-        let of = hash(&inst);
+        let hash = FxBuildHasher.hash_one(&inst);
         let entry = self.cons.entry(
-            of,
-            |&known| insts[known as usize] == inst,
-            |&known| hash(&insts[known as usize]),
+            hash,
+            |known| known.hash == hash && insts[known.value as usize] == inst,
+            |known| known.hash,
         );
         match entry {
-            Entry::Occupied(known) => Value(*known.get()),
+            Entry::Occupied(known) => Value(known.get().value),
             Entry::Vacant(place) => {
                 let value = insts.len() as u32;
-                place.insert(value);
+                place.insert(Known { hash, value });
                 insts.push(inst);
                 self.function.types.push(ty);
                 Value(value)

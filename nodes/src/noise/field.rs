@@ -1,7 +1,7 @@
 //! The field of a filtered source, and the signal that it is at a position with a spread.
 
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Builder, SharedFunction, Value};
 use mipless_codegen::moments::{Mode, Signal};
 
 /// The covariance of a position within the footprint, in squared units of the position.
@@ -22,26 +22,46 @@ impl Spread {
         let [x, y] = position else {
             panic!("a position has two coordinates")
         };
-        let limit = b.f32(WIDEST * WIDEST);
         let (vx, vy) = (x.variance(b), y.variance(b));
         let covariance = x.covariance(b, y).total;
-        // One factor for all three keeps the shape.
-        let largest = b.max(vx, vy);
-        let largest = b.max(largest, limit);
-        let factor = b.div(limit, largest);
-        let covariance = [vx, covariance, vy].map(|v| b.mul(v, factor));
-        let [xx, xy, yy] = covariance;
-        let (sum, difference) = (b.add(xx, yy), b.sub(xx, yy));
-        let (half, tilt) = (b.scale(sum, 0.5), b.scale(difference, 0.5));
-        let square = b.dot(&[tilt, xy], &[tilt, xy]);
-        let root = b.sqrt(square);
-        let zero = b.f32(0.0);
-        let (more, less) = (b.add(half, root), b.sub(half, root));
+        let of = SharedFunction {
+            name: "spread",
+            variant: 0,
+            doc: "The covariance of a position, limited, and its eigenvalues.",
+        };
+        let inputs = [("xx", vx), ("xy", covariance), ("yy", vy)];
+        let [xx, xy, yy, major, minor] =
+            b.shared(of, &inputs, |b, v| limited([v[0], v[1], v[2]], b));
         Self {
-            covariance,
-            eigenvalues: [more, b.max(less, zero)],
+            covariance: [xx, xy, yy],
+            eigenvalues: [major, minor],
         }
     }
+}
+
+/// A covariance, no larger than the widest, and its eigenvalues.
+fn limited(covariance: [Value; 3], b: &mut Builder) -> [(&'static str, Value); 5] {
+    let [vx, _, vy] = covariance;
+    let limit = b.f32(WIDEST * WIDEST);
+    // One factor for all three keeps the shape.
+    let largest = b.max(vx, vy);
+    let largest = b.max(largest, limit);
+    let factor = b.div(limit, largest);
+    let [xx, xy, yy] = covariance.map(|v| b.mul(v, factor));
+    let (sum, difference) = (b.add(xx, yy), b.sub(xx, yy));
+    let (half, tilt) = (b.scale(sum, 0.5), b.scale(difference, 0.5));
+    let square = b.dot(&[tilt, xy], &[tilt, xy]);
+    let root = b.sqrt(square);
+    let zero = b.f32(0.0);
+    let (more, less) = (b.add(half, root), b.sub(half, root));
+    let minor = b.max(less, zero);
+    [
+        ("xx", xx),
+        ("xy", xy),
+        ("yy", yy),
+        ("major", more),
+        ("minor", minor),
+    ]
 }
 
 /// A source filtered by the footprint, in units of its position; what is not carried is 0.
@@ -64,33 +84,74 @@ impl Field {
         let [x, y] = position else {
             panic!("a position has two coordinates")
         };
-        let algebra = &mut lower.algebra;
-        let [dx, dy] = self.gradient;
-        let b = &mut algebra.b;
+        let mode = lower.mode();
+        let b = lower.b();
         let mut signal = Signal::certain(b, self.mean);
-        if matches!(algebra.mode, Mode::Point | Mode::Naive) {
-            return signal;
-        }
-        if matches!(algebra.mode, Mode::Local | Mode::Quad) {
-            let (of_x, of_y) = (x.scale(b, dx), y.scale(b, dy));
-            signal = of_x.add(b, &of_y);
-            signal.cell = None;
-            signal.mean = self.mean;
-        }
-        if algebra.mode == Mode::Quad {
-            let [h11, h12, h22] = self.hessian;
-            // Columns of J: the response of (x, y) to δ₁ and to δ₂.
-            let columns = [[x.g[0], y.g[0]], [x.g[1], y.g[1]]];
-            for (out, (i, j)) in signal.h.iter_mut().zip([(0, 0), (0, 1), (1, 1)]) {
-                let [p, q] = columns[i];
-                let [r, s] = columns[j];
-                let left = b.dot(&[h11, h12], &[r, s]);
-                let right = b.dot(&[h12, h22], &[r, s]);
-                let bent = b.dot(&[p, q], &[left, right]);
-                *out = b.add(*out, bent);
+        if matches!(mode, Mode::Local | Mode::Quad) {
+            let [dx, dy] = self.gradient;
+            let mut inputs = vec![("dx", dx), ("dy", dy)];
+            for axis in [x, y] {
+                inputs.extend([
+                    ("gx", axis.g[0]),
+                    ("gy", axis.g[1]),
+                    ("private", axis.private),
+                ]);
+            }
+            let second = mode == Mode::Quad;
+            if second {
+                inputs.extend(self.hessian.map(|h| ("bend", h)));
+                for axis in [x, y] {
+                    inputs.extend(axis.h.map(|h| ("h", h)));
+                }
+            }
+            let of = SharedFunction {
+                name: "response",
+                variant: u32::from(second),
+                doc: "The response of a field to its position.",
+            };
+            let [gx, gy, hxx, hxy, hyy, private] = b.shared(of, &inputs, response);
+            signal.g = [gx, gy];
+            signal.h = [hxx, hxy, hyy];
+            signal.private = private;
+            if !(x.shared.is_empty() && y.shared.is_empty()) {
+                // The position's own symbols.
+                let (of_x, of_y) = (x.scale(b, dx), y.scale(b, dy));
+                signal.shared = of_x.add(b, &of_y).shared;
             }
         }
         lower.algebra.attach_fresh(&mut signal, self.rest);
         signal
     }
+}
+
+/// g, H and the private variance of a field by its derivatives and the coordinates'.
+fn response(b: &mut Builder, v: &[Value]) -> [(&'static str, Value); 6] {
+    let [dx, dy, xx, xy, x_private, yx, yy, y_private, second @ ..] = v else {
+        panic!("derivatives and two coordinates")
+    };
+    let gradient = [*dx, *dy];
+    let [gx, gy] = [[*xx, *yx], [*xy, *yy]].map(|column| b.dot(&gradient, &column));
+    let squares = gradient.map(|d| b.square(d));
+    let private = b.dot(&squares, &[*x_private, *y_private]);
+    let mut h = [b.f32(0.0); 3];
+    if let [h11, h12, h22, of_x @ .., _, _, _] = second {
+        let of_y = &second[6..];
+        // Columns of J: the response of (x, y) to δ₁ and to δ₂.
+        let columns = [[*xx, *yx], [*xy, *yy]];
+        for (k, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
+            let left = b.dot(&[*h11, *h12], &columns[j]);
+            let right = b.dot(&[*h12, *h22], &columns[j]);
+            let bent = b.dot(&columns[i], &[left, right]);
+            let own = b.dot(&gradient, &[of_x[k], of_y[k]]);
+            h[k] = b.add(own, bent);
+        }
+    }
+    [
+        ("gx", gx),
+        ("gy", gy),
+        ("hxx", h[0]),
+        ("hxy", h[1]),
+        ("hyy", h[2]),
+        ("private", private),
+    ]
 }
