@@ -8,6 +8,7 @@ mod entry;
 mod fusion;
 mod map;
 mod method;
+mod pair;
 mod sampling;
 mod symbols;
 
@@ -99,6 +100,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         functions,
         fused,
         maps: RefCell::default(),
+        gains: RefCell::default(),
         levels: Cell::new(None),
         library: Library::default(),
     };
@@ -170,6 +172,8 @@ struct Compiler<'a> {
     fused: RefCell<FxHashMap<usize, Samples>>,
     /// The functions of two signals, by their keys.
     maps: RefCell<FxHashMap<String, Map>>,
+    /// Whether regions of two signals are worth a map, by the node that they end in.
+    gains: RefCell<FxHashMap<usize, bool>>,
     /// The table of levels that pyramids share, once there is one.
     levels: Cell<Option<u32>>,
     /// The functions that all functions share.
@@ -260,6 +264,8 @@ pub struct Lower<'a> {
     bundles: Vec<Option<Bundle>>,
     carriers: symbols::Carriers,
     chains: Vec<Option<fusion::Chain>>,
+    pairs: Vec<Option<pair::Pair>>,
+    sums: Vec<Option<pair::Sum>>,
     parameter_scalars: Vec<usize>,
     /// The footprint of each source, in wavelengths of its dominant detail.
     footprints: Vec<Value>,
@@ -295,6 +301,8 @@ impl<'a> Lower<'a> {
             bundles: vec![None; compiler.graph.nodes.len()],
             carriers: symbols::Carriers::default(),
             chains: vec![None; compiler.graph.nodes.len()],
+            pairs: vec![None; compiler.graph.nodes.len()],
+            sums: vec![None; compiler.graph.nodes.len()],
             parameter_scalars,
             footprints: Vec::new(),
             nonlinear: false,
@@ -347,6 +355,7 @@ impl<'a> Lower<'a> {
                 "the catalogue of the graph"
             );
             self.algebra.bent = false;
+            self.algebra.knots = 0;
             self.algebra.period = None;
             let mut bundle = (definition.lower)(self, node);
             assert_eq!(

@@ -86,6 +86,8 @@ pub struct Algebra {
     pub shares: bool,
     /// Whether an operation since this was last cleared was not linear in a signal with a spread.
     pub bent: bool,
+    /// The most knots of a transfer since [`Self::bent`] was last cleared.
+    pub(crate) knots: u32,
     /// The period of the last transfer that bent, where it has one.
     pub(crate) period: Option<f32>,
     symbols: u32,
@@ -99,6 +101,7 @@ impl Algebra {
             mode,
             shares: false,
             bent: false,
+            knots: 0,
             period: None,
             symbols: 0,
         }

@@ -1,4 +1,4 @@
-//! Ten chains of functions of noises, footprints from 0.03 to 2 wavelengths.
+//! Ten chains of functions of noises and two more, footprints from 0.03 to 2 wavelengths.
 //!
 //! `cargo bench -p mipless-tests --bench cascades [-- NAME…]` prints Markdown: the RMS error of
 //! each method over the footprints and seeds, in thousandths of the chain's range, against 4096
@@ -26,13 +26,13 @@ const METHODS: [Method; 6] = [
 /// A chain that ends in the node `o` with values of [0, 1].
 struct Chain {
     name: &'static str,
-    /// The design study's figure, in thousandths.
+    /// The design study's figure, in thousandths; not a number for chains that it has not.
     fusion: f64,
     /// The nodes; `{n}` stands for a noise of unit variance, number n.
     nodes: &'static str,
 }
 
-const CHAINS: [Chain; 10] = [
+const CHAINS: [Chain; 12] = [
     Chain {
         name: "sin(8 gain(abs N))",
         fusion: 38.0,
@@ -46,7 +46,7 @@ const CHAINS: [Chain; 10] = [
     Chain {
         name: "turbulence (4 octaves), smoothstep",
         fusion: 49.0,
-        nodes: r#"{0},{1},{2},{3},"a0":{"type":"absval","inputs":{"in":{"node":"n0"}}},"a1":{"type":"absval","inputs":{"in":{"node":"n1"}}},"a2":{"type":"absval","inputs":{"in":{"node":"n2"}}},"a3":{"type":"absval","inputs":{"in":{"node":"n3"}}},"h1":{"type":"multiply","inputs":{"in1":{"node":"a1"},"in2":0.5}},"h2":{"type":"multiply","inputs":{"in1":{"node":"a2"},"in2":0.25}},"h3":{"type":"multiply","inputs":{"in1":{"node":"a3"},"in2":0.125}},"t1":{"type":"add","inputs":{"in1":{"node":"a0"},"in2":{"node":"h1"}}},"t2":{"type":"add","inputs":{"in1":{"node":"t1"},"in2":{"node":"h2"}}},"t":{"type":"add","inputs":{"in1":{"node":"t2"},"in2":{"node":"h3"}}},"o":{"type":"smoothstep","inputs":{"in":{"node":"t"},"low":0.9,"high":2.1}}"#,
+        nodes: r#"{0},{1},{2},{3},"a0":{"type":"absval","inputs":{"in":{"node":"n0"}}},"a1":{"type":"absval","inputs":{"in":{"node":"n1"}}},"a2":{"type":"absval","inputs":{"in":{"node":"n2"}}},"a3":{"type":"absval","inputs":{"in":{"node":"n3"}}},"h1":{"type":"multiply","inputs":{"in1":{"node":"a1"},"in2":0.5}},"h2":{"type":"multiply","inputs":{"in1":{"node":"a2"},"in2":0.25}},"h3":{"type":"multiply","inputs":{"in1":{"node":"a3"},"in2":0.125}},"t1":{"type":"add","inputs":{"in1":{"node":"a0"},"in2":{"node":"h1"}}},"t2":{"type":"add","inputs":{"in1":{"node":"t1"},"in2":{"node":"h2"}}},"t":{"type":"add","inputs":{"in1":{"node":"t2"},"in2":{"node":"h3"}}},"o":{"type":"smoothstep","inputs":{"in":{"node":"t"},"low":0.6,"high":2.4}}"#,
     },
     Chain {
         name: "turbulence, step",
@@ -82,6 +82,16 @@ const CHAINS: [Chain; 10] = [
         name: "step(ridged)",
         fusion: 68.0,
         nodes: STEPPED_RIDGED,
+    },
+    Chain {
+        name: "step(N1 N2)",
+        fusion: f64::NAN,
+        nodes: r#"{0},{1},"m":{"type":"multiply","inputs":{"in1":{"node":"n0"},"in2":{"node":"n1"}}},"o":{"type":"step","inputs":{"in":{"node":"m"},"edge":0.3}}"#,
+    },
+    Chain {
+        name: "step(step(N1) + N2/4)",
+        fusion: f64::NAN,
+        nodes: r#"{0},{1},"s":{"type":"step","inputs":{"in":{"node":"n0"},"edge":0.2}},"h":{"type":"multiply","inputs":{"in1":{"node":"n1"},"in2":0.25}},"t":{"type":"add","inputs":{"in1":{"node":"s"},"in2":{"node":"h"}}},"o":{"type":"step","inputs":{"in":{"node":"t"},"edge":0.7}}"#,
     },
 ];
 

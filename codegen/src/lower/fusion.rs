@@ -15,20 +15,33 @@ use std::sync::{Arc, LazyLock};
 
 /// The most functions that are not linear in one region.
 const LONGEST: u32 = 12;
+/// The most knots of a single function in closed form: with more the table takes less time (on a
+/// CPU, 8 for a colour and 6 for a number; `cargo bench -p mipless-tests --bench stops`).
+const MOST_KNOTS: u32 = 8;
 
 /// That a node is a function of one scalar signal alone.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
     /// The node whose output the function takes.
-    entry: NodeId,
+    pub(super) entry: NodeId,
     /// That output, which outlives its other readers.
-    signal: Rc<Signal>,
+    pub(super) signal: Rc<Signal>,
     /// How many nodes between are not linear, at most.
-    bends: u32,
+    pub(super) bends: u32,
     /// Whether no live parameter shapes it.
-    fixed: bool,
+    pub(super) fixed: bool,
     /// The period of the function, where the entry is not bounded but the function repeats.
     period: Option<f32>,
+}
+
+/// What a node that is read is known to be.
+pub(super) enum Known {
+    /// A number; whether literals alone shape it.
+    Certain { literal: bool },
+    /// A function of one signal: itself, at least.
+    Function(Chain),
+    /// Several signals, of which no one function is known.
+    Opaque,
 }
 
 impl Chain {
@@ -58,6 +71,7 @@ impl<'a> Compiler<'a> {
             functions: Default::default(),
             fused: Default::default(),
             maps: Default::default(),
+            gains: Default::default(),
             levels: Default::default(),
             library: self.library.clone(),
         }
@@ -70,6 +84,10 @@ impl Lower<'_> {
     pub(super) fn fuse(&mut self, index: usize, node: &Node, closed: &[Signal]) -> Option<Bundle> {
         if !self.algebra.mode.spreads() {
             return None;
+        }
+        let pair = self.fuse_pair(index, node, closed);
+        if pair.is_some() {
+            return pair;
         }
         let before = self.chain(node)?;
         let bends = before.bends + u32::from(self.algebra.bent);
@@ -90,7 +108,8 @@ impl Lower<'_> {
             });
         }
         let domain = before.domain()?;
-        if !self.algebra.bent || before.bends == 0 || !before.fixed {
+        let long = self.algebra.knots > MOST_KNOTS;
+        if !self.algebra.bent || (before.bends == 0 && !long) || !before.fixed {
             return None;
         }
         Some(self.tabulated(index, closed, node, &before, domain))
@@ -134,31 +153,15 @@ impl Lower<'_> {
                 Source::Surface => return None,
                 Source::Node(id) => *id,
             };
-            let this = match &self.chains[id.index()] {
-                Some(chain) => chain.clone(),
-                None => {
-                    let bundle = self.bundles[id.index()].as_ref()?;
-                    if bundle
-                        .iter()
-                        .all(|signal| signal.is_certain(&self.algebra.b))
-                    {
-                        // A number: what hangs on a parameter, even one that drops out of it,
-                        // cannot be computed apart from the parameters.
-                        fixed &= self.compiler.literal[id.index()];
-                        continue;
-                    }
-                    if bundle.len() != 1 {
-                        return None;
-                    }
-                    let signal = Rc::new(bundle[0].clone());
-                    Chain {
-                        entry: id,
-                        signal,
-                        bends: 0,
-                        fixed: true,
-                        period: None,
-                    }
+            let this = match self.known(id)? {
+                Known::Function(chain) => chain,
+                // A number: what hangs on a parameter, even one that drops out of it, cannot be
+                // computed apart from the parameters.
+                Known::Certain { literal } => {
+                    fixed &= literal;
+                    continue;
                 }
+                Known::Opaque => return None,
             };
             fixed &= this.fixed;
             chain = Some(match chain {
@@ -171,6 +174,30 @@ impl Lower<'_> {
             });
         }
         chain.map(|chain| Chain { fixed, ..chain })
+    }
+
+    /// What an input is known to be; `None` where it is not there.
+    pub(super) fn known(&self, id: NodeId) -> Option<Known> {
+        if let Some(chain) = &self.chains[id.index()] {
+            return Some(Known::Function(chain.clone()));
+        }
+        let bundle = self.bundles[id.index()].as_ref()?;
+        let certain = |signal: &Signal| signal.is_certain(&self.algebra.b);
+        Some(if bundle.iter().all(certain) {
+            Known::Certain {
+                literal: self.compiler.literal[id.index()],
+            }
+        } else if let [signal] = &bundle[..] {
+            Known::Function(Chain {
+                entry: id,
+                signal: Rc::new(signal.clone()),
+                bends: 0,
+                fixed: true,
+                period: None,
+            })
+        } else {
+            Known::Opaque
+        })
     }
 
     fn tabulated(
@@ -217,10 +244,11 @@ impl Lower<'_> {
     }
 }
 
-/// The nodes from `entry` (exclusive) to `index`, inputs first.
-fn region(compiler: &Compiler<'_>, index: usize, entry: NodeId) -> Vec<usize> {
+/// The nodes from `entries` (exclusive) to `index`, inputs first.
+pub(super) fn region(compiler: &Compiler<'_>, index: usize, entries: &[NodeId]) -> Vec<usize> {
     let mut region = vec![index];
-    let mut seen = rustc_hash::FxHashSet::from_iter([index, entry.index()]);
+    let mut seen: rustc_hash::FxHashSet<usize> = entries.iter().map(|e| e.index()).collect();
+    seen.insert(index);
     let mut next = 0;
     while next < region.len() {
         for input in &compiler.graph.nodes[region[next]].inputs {
@@ -255,7 +283,7 @@ fn function(
     };
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
     lower.bundles[entry.index()] = Some(vec![argument]);
-    for node in region(compiler, index, entry) {
+    for node in region(compiler, index, &[entry]) {
         let definition = &compiler.catalogue[graph.nodes[node].definition];
         let bundle = (definition.lower)(&mut lower, &graph.nodes[node]);
         lower.bundles[node] = Some(bundle);

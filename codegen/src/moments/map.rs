@@ -2,9 +2,12 @@
 //!
 //! Level l holds E[T] under an isotropic Gaussian on a grid of at most σ_l/2, read linearly in
 //! position and in σ. A covariance Σ is read by five taps along its major axis: with s² =
-//! max(λ₂, λ₁/16), Σ ≈ s² I + (λ₁ − s²) v vᵀ, which blurs the minor axis too far and keeps the
+//! max(λ₂, λ₁/25), Σ ≈ s² I + (λ₁ − s²) v vᵀ, which blurs the minor axis too far and keeps the
 //! major variance (MATH §5; DESIGN §7). So any correlation of the two signals is filtered, where
 //! Grenier et al. 2022 tabulate axis-aligned ones alone.
+//!
+//! Where second-order coefficients are carried, the mean is that of four parts of the footprint, by
+//! [`split`].
 //!
 //! Slopes are stored as σ E[∂T] and what is left of the variance as its root; all components of a
 //! texel are packed into one number. Below the finest σ the function itself is the other end.
@@ -12,8 +15,9 @@
 mod bake;
 mod pack;
 mod read;
+mod split;
 
-use super::{Algebra, Signal};
+use super::{Algebra, Mode, Signal};
 use crate::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
 use pack::Packing;
 use std::sync::{Arc, LazyLock};
@@ -198,13 +202,24 @@ impl Algebra {
         let b = &mut self.b;
         let (vx, vy) = (x.variance(b), y.variance(b));
         let covariance = x.covariance(b, &y).total;
-        let moments = map.moments(b, [x.mean, y.mean], [vx, covariance, vy]);
+        let mut moments = map.moments(b, [x.mean, y.mean], [vx, covariance, vy]);
+        if self.mode == Mode::Quad {
+            let means = split::means(b, map, [&x, &y]);
+            let fine = map.is_fine(b, [vx, covariance, vy]);
+            for (moments, mean) in moments.iter_mut().zip(means.into_iter().flatten()) {
+                moments.mean = b.select(fine, moments.mean, mean);
+            }
+        }
         (moments.into_iter().zip(&map.ranges))
             .map(|(m, &range)| {
                 let b = &mut self.b;
                 let (of_x, of_y) = (x.scale(b, m.slopes[0]), y.scale(b, m.slopes[1]));
                 let mut out = of_x.add(b, &of_y);
-                out.mean = b.clamp(m.mean, range[0], range[1]);
+                out.mean = if range.iter().all(|bound| bound.is_finite()) {
+                    b.clamp(m.mean, range[0], range[1])
+                } else {
+                    m.mean
+                };
                 out.cell = None;
                 out.range = range;
                 out.binary = None;

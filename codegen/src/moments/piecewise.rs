@@ -406,6 +406,10 @@ impl Transfer for Piecewise {
         Some([low, low + b.as_constant(knot.jump)?])
     }
 
+    fn knots(&self) -> u32 {
+        self.knots.len() as u32
+    }
+
     fn range(&self, b: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
         // The extremes are at knots (either side), at the ends, and where the slope of a cubic is 0.
         let constant = |v: Value| b.as_constant(v);

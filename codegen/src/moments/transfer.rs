@@ -52,6 +52,10 @@ pub trait Transfer {
     fn binary(&self, _: &Builder) -> Option<[f32; 2]> {
         None
     }
+    /// How many places the closed form adds a term for: where a table is cheaper depends on it.
+    fn knots(&self) -> u32 {
+        1
+    }
     /// How the function is one of a family that shares its code, over an input within `range`;
     /// `None` builds it where it is used.
     fn shared(&self, _b: &mut Builder, _range: [f32; 2]) -> Option<SharedTransfer> {
@@ -160,6 +164,7 @@ impl Algebra {
         };
         if !b.is_zero(distortion) {
             self.bent = true;
+            self.knots = self.knots.max(t.knots());
             self.period = t.period();
         }
         let mut out = Signal {

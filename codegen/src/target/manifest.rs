@@ -78,6 +78,10 @@ pub struct ManifestTable {
     pub first: u32,
     /// How many numbers it has.
     pub length: u32,
+    /// The largest error of reading it between its numbers, in units of the function; of slopes and
+    /// higher moments, times the powers of σ that they are stored with. Absent where it is exact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<f64>,
 }
 
 impl Manifest {
@@ -106,11 +110,12 @@ impl Manifest {
         let tables = shader
             .tables
             .iter()
-            .flat_map(|t| &t.entries)
-            .map(|(name, first, length)| ManifestTable {
+            .flat_map(|t| t.entries.iter().zip(&t.numbers))
+            .map(|((name, first, length), numbers)| ManifestTable {
                 name: name.clone(),
                 first: *first,
                 length: *length,
+                error: numbers.error(),
             });
         Self {
             function: shader.function.clone(),

@@ -23,7 +23,8 @@ pub(super) fn table(grid: &Grid, moment: Moment, periodic: bool, packing: &Packi
     packing.pack(&components)
 }
 
-/// The samples of one component, averaged so far that σ is still many of them.
+/// The samples of one component, averaged so far that σ is still many of them, with a border of the
+/// values that the function keeps beyond the domain: those of its edge, not of the last averages.
 struct Samples {
     side: usize,
     values: Vec<f64>,
@@ -60,20 +61,16 @@ impl Kernel {
         [plain, scored].map(|rows| Self { rows })
     }
 
-    /// The products with every row of a matrix of `side` columns.
+    /// The products with every row of samples with a border; the rows stay.
     fn across(&self, values: &[f64], side: usize, periodic: bool) -> Vec<f64> {
-        let mut out = Vec::with_capacity(values.len() / side * self.rows.len());
-        let reach = self.rows.iter().map(|(_, w)| w.len()).max().unwrap_or(0) + 1;
-        let mut padded = Vec::new();
-        for row in values.chunks(side) {
-            // The row with what lies beyond it on both sides.
-            padded.clear();
-            let place = |i: i64| wrapped(i, side, periodic);
-            padded.extend((-(reach as i64)..0).map(|i| row[place(i)]));
-            padded.extend_from_slice(row);
-            padded.extend((0..reach as i64).map(|i| row[place(side as i64 + i)]));
+        let reach = self.rows.iter().map(|(_, w)| w.len()).max().unwrap_or(0) as i64 + 1;
+        let places = -reach..side as i64 + reach;
+        let places: Vec<usize> = places.map(|i| bordered(i, side, periodic)).collect();
+        let mut out = Vec::with_capacity(values.len() / (side + 2) * self.rows.len());
+        for row in values.chunks(side + 2) {
+            let padded: Vec<f64> = places.iter().map(|&place| row[place]).collect();
             for (first, weights) in &self.rows {
-                let start = (first + reach as i64) as usize;
+                let start = (first + reach) as usize;
                 let near = &padded[start..start + weights.len()];
                 out.push(near.iter().zip(weights).map(|(x, w)| x * w).sum());
             }
@@ -81,13 +78,13 @@ impl Kernel {
         out
     }
 
-    /// The products with every column of a matrix of `columns` columns.
+    /// The products with every column of rows with a border.
     fn down(&self, values: &[f64], columns: usize, periodic: bool) -> Vec<f64> {
-        let side = values.len() / columns;
+        let side = values.len() / columns - 2;
         let mut out = vec![0.0; self.rows.len() * columns];
         for ((first, weights), sums) in self.rows.iter().zip(out.chunks_mut(columns)) {
             for (i, w) in (*first..).zip(weights) {
-                let row = wrapped(i, side, periodic) * columns;
+                let row = bordered(i, side, periodic) * columns;
                 for (sum, x) in sums.iter_mut().zip(&values[row..row + columns]) {
                     *sum += w * x;
                 }
@@ -97,20 +94,27 @@ impl Kernel {
     }
 }
 
-fn wrapped(i: i64, side: usize, periodic: bool) -> usize {
+/// Where sample i is among samples with a border.
+fn bordered(i: i64, side: usize, periodic: bool) -> usize {
     let side = side as i64;
     let i = if periodic {
         i.rem_euclid(side)
     } else {
-        i.clamp(0, side - 1)
+        i.clamp(-1, side)
     };
-    i as usize
+    (i + 1) as usize
 }
 
 impl Samples {
     fn new(samples: &[f32], squared: bool) -> Self {
         assert_eq!(samples.len(), SIDE * SIDE, "samples of a map");
-        let values: Vec<f64> = samples.iter().copied().map(f64::from).collect();
+        let edge = |i: usize| i.saturating_sub(1).min(SIDE - 1);
+        let values: Vec<f64> = (0..(SIDE + 2) * (SIDE + 2))
+            .map(|i| {
+                let (row, column) = (edge(i / (SIDE + 2)), edge(i % (SIDE + 2)));
+                f64::from(samples[row * SIDE + column])
+            })
+            .collect();
         let squares = if squared {
             values.iter().map(|x| x * x).collect()
         } else {
@@ -126,14 +130,21 @@ impl Samples {
     /// Halves the side while the level's σ stays [`DENSE`].
     fn coarsen(&mut self, level: usize) {
         while sigma(level) * self.side as f64 >= 2.0 * DENSE {
+            let (from, side) = (self.side + 2, self.side / 2);
+            // Of each row or column with its border: those that it is the average of.
+            let pair = |i: usize| match i {
+                0 => [0, 0],
+                _ if i > side => [from - 1, from - 1],
+                _ => [2 * i - 1, 2 * i],
+            };
             let halved = |values: &[f64]| -> Vec<f64> {
-                let mut out = Vec::with_capacity(values.len() / 4);
-                for pair in values.chunks(2 * self.side) {
-                    let (above, below) = pair.split_at(self.side);
-                    out.extend(
-                        (above.chunks(2).zip(below.chunks(2)))
-                            .map(|(p, q)| 0.25 * (p[0] + p[1] + q[0] + q[1])),
-                    );
+                let mut out = Vec::with_capacity((side + 2) * (side + 2));
+                for row in 0..side + 2 {
+                    let rows = pair(row).map(|row| &values[row * from..(row + 1) * from]);
+                    out.extend((0..side + 2).map(|column| {
+                        let [p, q] = pair(column);
+                        0.25 * (rows[0][p] + rows[0][q] + rows[1][p] + rows[1][q])
+                    }));
                 }
                 out
             };

@@ -7,25 +7,18 @@ use crate::ir::{Builder, FunctionRef, Module, Value};
 const WIDEST: f32 = 1e6;
 
 /// s_min is at least this share of s_max.
-const ASPECT: f32 = 0.25;
+const ASPECT: f32 = 0.2;
 
-/// Nodes x and weights of the taps along the major axis: uniform nodes with Gaussian weights, of
-/// unit variance. Gauss–Hermite nodes err 1.5 times as much on maps with jumps (MATH §5).
-fn taps() -> [[f32; 2]; 5] {
-    let nodes: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+/// Nodes x and weights of five taps along the major axis: uniform nodes with Gaussian weights, of
+/// unit variance. Gauss–Hermite nodes err 1.5 times as much on maps with jumps (MATH §5); three taps
+/// leave gaps between them where the ratio of the axes is capped.
+fn rule() -> [[f64; 2]; 5] {
+    let nodes = [-2.0, -1.0, 0.0, 1.0, 2.0f64];
     let weights = nodes.map(|x| (-0.5 * x * x).exp());
     let total: f64 = weights.iter().sum();
-    let variance: f64 = nodes
-        .iter()
-        .zip(weights)
-        .map(|(x, w)| w * x * x)
-        .sum::<f64>()
-        / total;
-    let mut taps = [[0.0; 2]; 5];
-    for (tap, (x, w)) in taps.iter_mut().zip(nodes.iter().zip(weights)) {
-        *tap = [(x / variance.sqrt()) as f32, (w / total) as f32];
-    }
-    taps
+    let squares: f64 = nodes.iter().zip(weights).map(|(x, w)| w * x * x).sum();
+    let sd = (squares / total).sqrt();
+    std::array::from_fn(|i| [nodes[i] / sd, weights[i] / total])
 }
 
 /// A function that reads one level of a table, linearly between texels: the codes of all components
@@ -101,7 +94,27 @@ struct Taps {
     places: Vec<Tap>,
 }
 
-#[derive(Clone, Copy)]
+impl Taps {
+    /// The mean of a component over the taps.
+    fn weighted(&self, b: &mut Builder, values: &[Vec<Value>], component: usize) -> Value {
+        let mut sum = b.f32(0.0);
+        for (tap, values) in self.places.iter().zip(values) {
+            let part = b.scale(values[component], tap.weight);
+            sum = b.add(sum, part);
+        }
+        sum
+    }
+}
+
+/// The eigenvalues of a covariance (11, 12, 22), the larger first.
+fn eigenvalues(b: &mut Builder, [xx, xy, yy]: [Value; 3]) -> (Value, Value) {
+    let (sum, difference) = (b.add(xx, yy), b.sub(xx, yy));
+    let (half, tilt) = (b.scale(sum, 0.5), b.scale(difference, 0.5));
+    let square = b.dot(&[tilt, xy], &[tilt, xy]);
+    let root = b.sqrt(square);
+    (b.add(half, root), b.sub(half, root))
+}
+
 struct Tap {
     weight: f32,
     offset: [Value; 2],
@@ -116,21 +129,8 @@ impl Map {
         mean: [Value; 2],
         covariance: [Value; 3],
     ) -> Vec<Moments> {
-        let widths = self.domain.widths();
-        let inverse = widths.map(|w| 1.0 / w);
-        let [xx, xy, yy] = covariance;
-        let mut covariance = [
-            b.scale(xx, inverse[0] * inverse[0]),
-            b.scale(xy, inverse[0] * inverse[1]),
-            b.scale(yy, inverse[1] * inverse[1]),
-        ];
-        // One factor for all three keeps the shape.
-        let limit = b.f32(WIDEST);
-        let most = b.max(covariance[0], covariance[2]);
-        let most = b.max(most, limit);
-        let factor = b.div(limit, most);
-        covariance = covariance.map(|v| b.mul(v, factor));
-        let taps = self.taps(b, mean, covariance);
+        let inverse = self.domain.widths().map(|w| 1.0 / w);
+        let taps = self.taps(b, mean, covariance, &rule());
         let levels = self.level(b, taps.s);
         let means = self.read(b, &taps, &levels, Moment::Mean);
         let [slopes_x, slopes_y] = [Moment::SlopeX, Moment::SlopeY].map(|moment| {
@@ -145,12 +145,7 @@ impl Map {
         });
         let roots = self.read(b, &taps, &levels, Moment::Distortion);
         let weighted = |b: &mut Builder, values: &[Vec<Value>], component: usize| {
-            let mut sum = b.f32(0.0);
-            for (tap, values) in taps.places.iter().zip(values) {
-                let part = b.scale(values[component], tap.weight);
-                sum = b.add(sum, part);
-            }
-            sum
+            taps.weighted(b, values, component)
         };
         let points = self.point(b, mean, taps.below);
         (0..self.packing.components())
@@ -190,6 +185,42 @@ impl Map {
             .collect()
     }
 
+    /// The means of all components at a mean and a covariance that are a part of a footprint; a part
+    /// below the finest σ is taken for that.
+    pub(super) fn part(
+        &self,
+        b: &mut Builder,
+        mean: [Value; 2],
+        covariance: [Value; 3],
+    ) -> Vec<Value> {
+        let taps = self.taps(b, mean, covariance, &rule());
+        let levels = self.level(b, taps.s);
+        let means = self.read(b, &taps, &levels, Moment::Mean);
+        (0..self.packing.components())
+            .map(|i| taps.weighted(b, &means, i))
+            .collect()
+    }
+
+    /// Whether a footprint of this covariance is smaller than the finest σ.
+    pub(super) fn is_fine(&self, b: &mut Builder, covariance: [Value; 3]) -> Value {
+        let [xx, xy, yy] = self.relative(b, covariance);
+        let (largest, _) = eigenvalues(b, [xx, xy, yy]);
+        let finest = b.f32((FINEST * FINEST) as f32);
+        b.lt(largest, finest)
+    }
+
+    /// A covariance in units of the domain, not larger than [`WIDEST`].
+    fn relative(&self, b: &mut Builder, [xx, xy, yy]: [Value; 3]) -> [Value; 3] {
+        let [p, q] = self.domain.widths().map(|w| 1.0 / w);
+        let covariance = [b.scale(xx, p * p), b.scale(xy, p * q), b.scale(yy, q * q)];
+        // One factor for all three keeps the shape.
+        let limit = b.f32(WIDEST);
+        let most = b.max(covariance[0], covariance[2]);
+        let most = b.max(most, limit);
+        let factor = b.div(limit, most);
+        covariance.map(|v| b.mul(v, factor))
+    }
+
     /// The function itself where the footprint is smaller than the finest σ.
     fn point(&self, b: &mut Builder, mean: [Value; 2], below: Value) -> Vec<Value> {
         let (none, once, zero) = (b.u32(0), b.u32(1), b.f32(0.0));
@@ -198,12 +229,16 @@ impl Map {
         b.fold(&self.branch, count, &init, &mean)
     }
 
-    fn taps(&self, b: &mut Builder, mean: [Value; 2], [xx, xy, yy]: [Value; 3]) -> Taps {
-        let (sum, difference) = (b.add(xx, yy), b.sub(xx, yy));
-        let (half, tilt) = (b.scale(sum, 0.5), b.scale(difference, 0.5));
-        let square = b.dot(&[tilt, xy], &[tilt, xy]);
-        let root = b.sqrt(square);
-        let (more, less) = (b.add(half, root), b.sub(half, root));
+    fn taps(
+        &self,
+        b: &mut Builder,
+        mean: [Value; 2],
+        covariance: [Value; 3],
+        rule: &[[f64; 2]],
+    ) -> Taps {
+        let [xx, xy, yy] = self.relative(b, covariance);
+        let (more, less) = eigenvalues(b, [xx, xy, yy]);
+        let (difference, root) = (b.sub(xx, yy), b.sub(more, less));
         let finest = FINEST as f32;
         let floor = b.f32(finest * finest);
         let capped = b.scale(more, ASPECT * ASPECT);
@@ -217,7 +252,7 @@ impl Map {
         // v = (√½(1 + cos 2θ), ±√½(1 − cos 2θ)); where Σ is isotropic there is no direction and no
         // distance either.
         let guarded = b.offset(root, 1e-30);
-        let cosine = b.div(tilt, guarded);
+        let cosine = b.div(difference, guarded);
         let cosine = b.clamp(cosine, -1.0, 1.0);
         let half_cosine = b.scale(cosine, 0.5);
         let (plus, minus) = (b.offset(half_cosine, 0.5), b.neg(half_cosine));
@@ -237,9 +272,9 @@ impl Map {
             let from = b.offset(mean[i], -low);
             b.scale(from, 1.0 / (high - low))
         });
-        let places = taps()
-            .map(|[x, weight]| {
-                let offset = axis.map(|a| b.scale(a, x));
+        let places = (rule.iter())
+            .map(|&[x, weight]| {
+                let offset = axis.map(|a| b.scale(a, x as f32));
                 let place = [0, 1].map(|i| {
                     let at = b.add(centre[i], offset[i]);
                     if self.domain.periodic {
@@ -250,12 +285,12 @@ impl Map {
                     }
                 });
                 Tap {
-                    weight,
+                    weight: weight as f32,
                     offset,
                     place,
                 }
             })
-            .to_vec();
+            .collect();
         Taps {
             s,
             shrink,
