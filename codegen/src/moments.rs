@@ -18,6 +18,7 @@
 //! - What no result reads does not exist: a moment that is not demanded is dead code.
 
 mod extremum;
+mod joint;
 mod normal;
 mod piecewise;
 mod position;
@@ -37,7 +38,8 @@ pub use piecewise::{Knot, Piecewise, Shape};
 pub(crate) use position::scale_function;
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
-pub(crate) use tabulated::{Sampled, Samples, Tabulated, sample_points};
+pub use tabulated::Tabulated;
+pub(crate) use tabulated::{Sampled, Samples, sample_points};
 pub use transfer::{Gaussian, Moments, Transfer};
 pub use wave::SquareWave;
 

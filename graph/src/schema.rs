@@ -190,6 +190,7 @@ fn node(spec: &NodeSpec) -> Value {
         OutputType::Exactly(ty) => ty.name(),
         OutputType::Widest => "the widest of the inputs",
         OutputType::Stops => "the type of the stops",
+        OutputType::Signature => "the signature",
     };
     let category: Category = spec.category;
     let description = format!("{} ({}; out: {output})", spec.summary, category.name());
@@ -265,7 +266,7 @@ fn default(port: &PortSpec) -> Option<Value> {
         Default::Boolean(flag) => flag.into(),
         Default::Vector2(xy) => xy.map(decimal).to_vec().into(),
         Default::Color3(rgb) => rgb.map(decimal).to_vec().into(),
-        Default::Choice(name) => name.into(),
+        Default::Choice(text) | Default::Text(text) => text.into(),
         Default::Stops(stops) => {
             let stops = stops.iter();
             stops

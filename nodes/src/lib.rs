@@ -6,9 +6,11 @@
 mod componentwise;
 mod noise;
 mod page;
+mod picture;
 
 mod absval;
 mod add;
+mod byexample;
 mod checkerboard;
 mod clamp;
 mod colorramp;
@@ -17,6 +19,7 @@ mod constant;
 mod divide;
 mod extract;
 mod fractal2d;
+mod image;
 mod invert;
 mod luminance;
 mod max;
@@ -47,11 +50,13 @@ static CATALOGUE: &[NodeDef] = &[
     constant::DEF,
     texcoord::DEF,
     // Noise.
+    byexample::DEF,
     fractal2d::DEF,
     noise2d::DEF,
     spectralnoise2d::DEF,
     // Pattern.
     checkerboard::DEF,
+    image::DEF,
     stripes::DEF,
     // Arithmetic.
     add::DEF,

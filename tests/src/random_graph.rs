@@ -2,7 +2,7 @@
 
 use crate::random::Random;
 use mipless::{NodeSpec, Type};
-use mipless_graph::{OutputType, PortSpec, PortType};
+use mipless_graph::{OutputType, PortSpec, PortType, SIGNATURE};
 use serde_json::{Map, Value, json};
 
 /// A node that was made: its name and the type of its output.
@@ -86,6 +86,9 @@ fn inputs(random: &mut Random, spec: &NodeSpec, made: &[Made]) -> (Map<String, V
         OutputType::Exactly(ty) => ty,
         OutputType::Widest => widest,
         OutputType::Stops => stops,
+        OutputType::Signature => (inputs.get(SIGNATURE).and_then(Value::as_str))
+            .and_then(Type::by_name)
+            .unwrap_or(Type::Color3),
     };
     (inputs, ty)
 }
@@ -127,6 +130,8 @@ fn random_stops(random: &mut Random, colors: bool) -> Value {
 fn literal(random: &mut Random, port: &PortSpec, ty: Type) -> Value {
     match ty {
         Type::Boolean => json!(random.happens(0.5)),
+        Type::Filename => json!("images/granite.png"),
+        Type::String => json!(""),
         Type::Integer => json!(number(random, port).round() as i64),
         _ if ty.components() <= 1 => json!(number(random, port)),
         _ => (0..ty.components()).map(|_| number(random, port)).collect(),

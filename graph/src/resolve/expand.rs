@@ -8,8 +8,8 @@ use super::{Context, literal, range};
 use crate::diagnostic::escape;
 use crate::document::{Document, InputEntry};
 use crate::{
-    Diagnostic, Graph, Input, Literal, Node, NodeId, NodeSpec, Output, OutputType, Parameter,
-    ParameterId, PortType, Source, Type,
+    Diagnostic, FileReference, Graph, Images, Input, Literal, Node, NodeId, NodeSpec, Output,
+    OutputType, Parameter, ParameterId, PortType, SIGNATURE, Source, Type,
 };
 
 /// What became of a node of a template.
@@ -47,6 +47,7 @@ pub(super) fn expand(
         parameters: Vec::new(),
         nodes: Vec::new(),
         outputs: Vec::new(),
+        images: Images::default(),
     };
     let mut inputs = Vec::with_capacity(document.body.inputs.len());
     for (index, (name, entry)) in document.body.inputs.iter().enumerate() {
@@ -357,6 +358,12 @@ fn node(
                     if let Literal::Stops(read) = &value {
                         stops = read.ty;
                     }
+                    if let (Literal::Text(name), Type::Filename) = (&value, ty)
+                        && !name.is_empty()
+                    {
+                        let place = place.port("", port.name, String::new());
+                        context.files.push(FileReference::new(name.clone(), place));
+                    }
                     Some(Input {
                         source: Source::Literal(value),
                         from: ty,
@@ -391,6 +398,7 @@ fn node(
         OutputType::Exactly(ty) => ty,
         OutputType::Widest => common,
         OutputType::Stops => stops,
+        OutputType::Signature => signature(spec, &inputs),
     };
     let pointer = template.node_pointer(index);
     let id = NodeId(position_u32(graph.nodes.len()));
@@ -403,6 +411,19 @@ fn node(
         inputs,
     });
     Some((id, ty))
+}
+
+/// The type that the input `signature` names.
+///
+/// # Panics
+/// If the input is no choice of types: a bug of the spec.
+fn signature(spec: &NodeSpec, inputs: &[Input]) -> Type {
+    let chosen = spec.input(SIGNATURE).map(|index| &inputs[index].source);
+    let ty = match chosen {
+        Some(Source::Literal(Literal::Text(name))) => Type::by_name(name),
+        _ => None,
+    };
+    ty.unwrap_or_else(|| panic!("{} has no signature: {chosen:?}", spec.name))
 }
 
 fn written(value: &Value, port: PortType, ty: Type) -> Result<Literal, literal::Mistake> {
