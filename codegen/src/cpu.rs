@@ -107,7 +107,10 @@ impl<F: Float> Evaluator<F> {
     /// If the module is empty.
     pub fn with_uniform(module: &Module, is_uniform: impl Fn(usize) -> bool) -> Self {
         Self {
-            code: Code::new(module, &is_uniform),
+            code: Code::new(
+                &module.inlined(size_of::<F>() == size_of::<f32>()),
+                &is_uniform,
+            ),
             is_uniform: (0..module.entry().params.len()).map(is_uniform).collect(),
             runner: runner(Level::detect()),
         }

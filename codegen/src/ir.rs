@@ -24,6 +24,8 @@
 //! identical in every run.
 
 mod build;
+mod inline;
+mod library;
 mod op;
 mod prune;
 #[cfg(test)]
@@ -33,6 +35,8 @@ mod text;
 mod verify;
 
 pub use build::{Builder, FunctionRef};
+pub(crate) use library::Library;
+pub use library::SharedFunction;
 pub(crate) use op::for_each_op;
 pub use op::{Op, OpInfo};
 pub use table::{Numbers, Table};

@@ -6,6 +6,7 @@
 
 mod entry;
 mod fusion;
+mod map;
 mod method;
 mod sampling;
 mod symbols;
@@ -14,9 +15,10 @@ mod table;
 pub use method::{Method, ParseMethodError, PixelFilter};
 
 use crate::ir::{
-    Builder, FOOTPRINT, FunctionRef, Interface, Module, Port, Program, Type as Scalar, Value,
+    Builder, FOOTPRINT, FunctionRef, Interface, Library, Module, Port, Program, Type as Scalar,
+    Value,
 };
-use crate::moments::{Algebra, Mode, Samples, Signal, Symbol, Tabulated, scale_function};
+use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
 };
@@ -98,10 +100,13 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         tables: RefCell::default(),
         tabulated: RefCell::default(),
         fused,
+        maps: RefCell::default(),
         levels: Cell::new(None),
+        library: Library::default(),
     };
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
+    compiler.library.link(&mut module);
     Program {
         module: module.pruned(),
         interface,
@@ -140,6 +145,14 @@ impl InputView for Varying {
     fn choice(&self, _: &str) -> &str {
         ""
     }
+
+    fn number(&self, _: &str) -> f32 {
+        1.0
+    }
+
+    fn stops(&self, _: &str) -> Vec<[f32; 2]> {
+        vec![[1.0, 1.0]]
+    }
 }
 
 /// What all functions of a compilation share.
@@ -161,8 +174,12 @@ struct Compiler<'a> {
     fused: RefCell<FxHashMap<usize, Samples>>,
     /// The functions by tables that nodes share, by their keys.
     tabulated: RefCell<FxHashMap<String, Tabulated>>,
+    /// The functions of two signals, by their keys.
+    maps: RefCell<FxHashMap<String, Map>>,
     /// The table of levels that pyramids share, once there is one.
     levels: Cell<Option<u32>>,
+    /// The functions that all functions share.
+    library: Library,
 }
 
 /// The parameters of an entry or of a function that stands for the graph.
@@ -230,10 +247,8 @@ pub struct Lower<'a> {
 impl<'a> Lower<'a> {
     fn new(compiler: &'a Compiler<'a>, module: &'a mut Module, mut b: Builder, mode: Mode) -> Self {
         let arguments = Arguments::declare(&mut b, compiler.graph);
-        let mut lower = Self::with(compiler, module, Algebra::new(b, mode), arguments);
-        let scale = lower.function("scale_position", scale_function);
-        lower.b().scale_position = Some(scale);
-        lower
+        let b = b.with_library(compiler.library.clone());
+        Self::with(compiler, module, Algebra::new(b, mode), arguments)
     }
 
     fn with(
@@ -338,7 +353,11 @@ impl<'a> Lower<'a> {
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
-                    signal.hermite = Some(self.algebra.fresh_symbol());
+                    if signal.hermite.is_none() {
+                        let symbol = self.algebra.fresh_symbol();
+                        signal.hermite = Some(symbol);
+                        self.carriers.gained(symbol);
+                    }
                 }
             }
             self.bundles[index] = Some(bundle);

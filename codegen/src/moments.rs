@@ -17,12 +17,15 @@
 //!   0 and vanish when the function is built.
 //! - What no result reads does not exist: a moment that is not demanded is dead code.
 
+mod curve;
 mod extremum;
 mod joint;
+mod map;
 mod normal;
 mod piecewise;
 mod position;
 mod product;
+mod selection;
 mod signal;
 mod smooth;
 mod tabulated;
@@ -33,15 +36,17 @@ mod wave;
 
 use crate::ir::{Builder, Value};
 
+pub use curve::Curve;
+pub use map::Domain;
+pub(crate) use map::{Grid, Map, SIDE};
 pub use normal::Normal;
-pub use piecewise::{Knot, Piecewise, Shape};
-pub(crate) use position::scale_function;
+pub use piecewise::{Bump, Knot, Piecewise, Shape};
 pub use signal::{Covariance, Signal, Symbol};
-pub use smooth::{Polynomial, RealPower, Reciprocal, Sine};
+pub use smooth::{Exponential, Polynomial, RealPower, Reciprocal, Sine};
 pub use tabulated::Tabulated;
 pub(crate) use tabulated::{Sampled, Samples, sample_points};
-pub use transfer::{Gaussian, Moments, Transfer};
-pub use wave::SquareWave;
+pub use transfer::{Gaussian, Moments, SharedTransfer, Transfer};
+pub use wave::{Corner, LinearWave, SquareWave};
 
 /// Which moments signals carry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -126,13 +131,36 @@ impl Algebra {
         }
     }
 
-    /// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be
-    /// seen.
-    pub fn spread(&mut self, variance: Value) -> (Value, Value) {
-        let b = &mut self.b;
-        let raised = b.offset(variance, 1e-12);
-        let sd = b.sqrt(raised);
-        let one = b.f32(1.0);
-        (sd, b.div(one, sd))
+    /// The same signal, ready to be read more than once by what is built of it: its private variance
+    /// becomes a symbol, and so does its second Hermite polynomial.
+    pub fn expose(&mut self, x: &Signal) -> Signal {
+        let mut out = x.clone();
+        if !self.mode.spreads() || x.is_certain(&self.b) {
+            return out;
+        }
+        if !self.b.is_zero(x.private) {
+            let symbol = self.fresh_symbol();
+            let coefficient = self.b.sqrt(x.private);
+            out.push_shared(symbol, coefficient);
+            out.private = self.b.f32(0.0);
+        }
+        if out.hermite.is_none() {
+            out.hermite = Some(self.fresh_symbol());
+        }
+        out
     }
+
+    /// Says the period of the function that a node composed of several operations, where it has one:
+    /// that of its last transfer is in other units.
+    pub fn repeats(&mut self, period: Option<f32>) {
+        self.period = period;
+    }
+}
+
+/// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be seen.
+pub(crate) fn spread(b: &mut Builder, variance: Value) -> (Value, Value) {
+    let raised = b.offset(variance, 1e-12);
+    let sd = b.sqrt(raised);
+    let one = b.f32(1.0);
+    (sd, b.div(one, sd))
 }

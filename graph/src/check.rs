@@ -138,6 +138,20 @@ impl InputView for View<'_> {
             other => panic!("{port} of {} is no choice: {other:?}", self.node.spec.name),
         }
     }
+
+    fn number(&self, port: &str) -> f32 {
+        match self.node.literal(port) {
+            Literal::Integer(number) => *number as f32,
+            other => other.numbers()[0],
+        }
+    }
+
+    fn stops(&self, port: &str) -> Vec<[f32; 2]> {
+        match self.node.literal(port) {
+            Literal::Stops(stops) => stops.means(),
+            other => panic!("{port} of {} is no list: {other:?}", self.node.spec.name),
+        }
+    }
 }
 
 /// Finds the statistics of every signal.

@@ -36,7 +36,7 @@ pub use schema::schema;
 pub use setting::{SettingError, parse_setting};
 pub use spec::{
     Behaviour, Category, ClassRule, Default, Doc, InputView, NodeSpec, OutputType, PortSpec,
-    PortType, Range, SIGNATURE,
+    PortType, Range,
 };
 pub use types::{Literal, Stop, Stops, Type};
 

@@ -188,9 +188,9 @@ fn node(spec: &NodeSpec) -> Value {
     let ports: Map<String, Value> = ports.collect();
     let output = match spec.output {
         OutputType::Exactly(ty) => ty.name(),
-        OutputType::Widest => "the widest of the inputs",
+        OutputType::Widest | OutputType::Whole => "the widest of the inputs",
+        OutputType::Named(_) => "the type that is named",
         OutputType::Stops => "the type of the stops",
-        OutputType::Signature => "the signature",
     };
     let category: Category = spec.category;
     let description = format!("{} ({}; out: {output})", spec.summary, category.name());

@@ -201,16 +201,16 @@ impl PortSpec {
 pub enum OutputType {
     /// This type.
     Exactly(Type),
-    /// The widest of the [`PortType::Any`] inputs.
+    /// The widest of the [`PortType::Any`] inputs; each component comes from the same components of
+    /// the inputs alone.
     Widest,
+    /// The widest of the [`PortType::Any`] inputs, whose components act on one another.
+    Whole,
+    /// The type that the [`PortType::Choice`] input of this name names.
+    Named(&'static str),
     /// The type of the values of the [`PortType::Stops`] input.
     Stops,
-    /// The type that the input `signature`, a [`PortType::Choice`] of types, names.
-    Signature,
 }
-
-/// The input that names the type of an [`OutputType::Signature`].
-pub const SIGNATURE: &str = "signature";
 
 /// The parts of a node's reference page; Markdown without headings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -257,6 +257,10 @@ pub trait InputView {
     fn flag(&self, port: &str) -> bool;
     /// The chosen name of a uniform port.
     fn choice(&self, port: &str) -> &str;
+    /// The number of a uniform port.
+    fn number(&self, port: &str) -> f32;
+    /// The stops of a uniform port, as places and the means of their values' components.
+    fn stops(&self, port: &str) -> Vec<[f32; 2]>;
 }
 
 /// The node's class rule.

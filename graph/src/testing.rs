@@ -60,7 +60,7 @@ static PICTURE: NodeSpec = spec(
             "A type.",
         ),
     ],
-    OutputType::Signature,
+    OutputType::Named("signature"),
     |_| Behaviour::Pattern,
 );
 static TEXCOORD_NODE: NodeSpec = spec("texcoord", &[], OutputType::Exactly(Type::Vector2), |_| {

@@ -119,6 +119,19 @@ pub struct Stops {
     pub stops: Vec<Stop>,
 }
 
+impl Stops {
+    /// The places with the means of the values' components.
+    pub fn means(&self) -> Vec<[f32; 2]> {
+        let count = self.ty.components();
+        (self.stops.iter())
+            .map(|stop| {
+                let sum: f32 = stop.value[..count].iter().sum();
+                [stop.at, sum / count as f32]
+            })
+            .collect()
+    }
+}
+
 /// A value written in a document, already of the type that its port wants.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Literal {

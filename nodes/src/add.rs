@@ -8,7 +8,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "add",
-    aliases: &["plus", "sum", "linear_dodge"],
+    aliases: &["sum", "linear_dodge"],
     category: Category::Arithmetic,
     summary: "The sum of two signals.",
     doc: Doc {

@@ -77,7 +77,7 @@ static SPEC: NodeSpec = NodeSpec {
         ),
         COLORSPACE,
     ],
-    output: OutputType::Signature,
+    output: OutputType::Named("signature"),
     class: |_| Behaviour::Gaussian { deviation: 0.1 },
     example: r#"{ "version": 1, "name": "granite_floor",
         "nodes": { "byexample": { "type": "byexample", "inputs": { "file": "images/granite.png", "uvtiling": [4, 4], "seed": 3 } } },

@@ -43,6 +43,23 @@ pub(crate) fn ternary(
         .collect()
 }
 
+/// The signals of an input, ready to be read more than once by the node (see
+/// [`Algebra::expose`](mipless_codegen::moments::Algebra::expose)).
+pub(crate) fn exposed(lower: &mut Lower<'_>, node: &Node, port: &str) -> Bundle {
+    let bundle = lower.bundle(node, port);
+    bundle.iter().map(|x| lower.algebra.expose(x)).collect()
+}
+
+/// `build` with every fresh ε a symbol, since intermediate results are read more than once; the
+/// whole has no period unless the node says so.
+pub(crate) fn composed<T>(lower: &mut Lower<'_>, build: impl FnOnce(&mut Lower<'_>) -> T) -> T {
+    let shares = std::mem::replace(&mut lower.algebra.shares, true);
+    let out = build(lower);
+    lower.algebra.shares = shares;
+    lower.algebra.repeats(None);
+    out
+}
+
 /// T(X).
 pub(crate) fn transfer(lower: &mut Lower<'_>, x: &Signal, t: &dyn Transfer) -> Signal {
     lower.algebra.transfer(x, t)
@@ -95,6 +112,20 @@ pub(crate) fn sum(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
     } else {
         x.add(b, y)
     }
+}
+
+/// X + M(Y − X): what X and Y share, and M with them, keeps its covariance.
+pub(crate) fn mixed(lower: &mut Lower<'_>, bg: &Signal, fg: &Signal, mask: &Signal) -> Signal {
+    let b = lower.b();
+    match (b.as_constant(mask.mean), mask.is_certain(b)) {
+        (Some(0.0), true) => return bg.clone(),
+        (Some(1.0), true) => return fg.clone(),
+        _ => {}
+    }
+    let bg = lower.algebra.expose(bg);
+    let across = fg.sub(lower.b(), &bg);
+    let part = product(lower, &across, mask);
+    bg.add(lower.b(), &part)
 }
 
 /// The means of a port that is a number to the node, one a component; a spread is ignored.

@@ -9,7 +9,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "divide",
-    aliases: &["div", "over", "math_divide"],
+    aliases: &["div", "math_divide"],
     category: Category::Arithmetic,
     summary: "The quotient of two signals.",
     doc: Doc {

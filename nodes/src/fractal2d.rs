@@ -73,6 +73,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
             lacunarity: lower.float(node, "lacunarity"),
             diminish: lower.float(node, "diminish"),
             seed: lower.integer(node, "seed"),
+            period: 0,
         };
         let position = position(lower, node);
         let field = lattice::filtered(lower, &position, octaves);

@@ -80,7 +80,7 @@ static SPEC: NodeSpec = NodeSpec {
         ),
         COLORSPACE,
     ],
-    output: OutputType::Signature,
+    output: OutputType::Named("signature"),
     class: |_| Behaviour::Pattern,
     example: r#"{ "version": 1, "name": "wall",
         "nodes": { "image": { "type": "image", "inputs": { "file": "images/granite.png", "uvtiling": [2, 2] } } },

@@ -8,7 +8,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "max",
-    aliases: &["lighten", "maximum", "math_max"],
+    aliases: &["maximum", "math_max"],
     category: Category::Arithmetic,
     summary: "The larger of two signals.",
     doc: Doc {

@@ -8,7 +8,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "min",
-    aliases: &["darken", "minimum", "math_min"],
+    aliases: &["minimum", "math_min"],
     category: Category::Arithmetic,
     summary: "The smaller of two signals.",
     doc: Doc {

@@ -1,6 +1,6 @@
 //! Linear interpolation.
 
-use crate::componentwise::{binary, product};
+use crate::componentwise::{binary, mixed};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -72,8 +72,6 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let mask = lower.signal(node, "mix");
     binary(lower, node, ["bg", "fg"], |lower, bg, fg| {
-        let across = fg.sub(lower.b(), bg);
-        let part = product(lower, &across, &mask);
-        bg.add(lower.b(), &part)
+        mixed(lower, bg, fg, &mask)
     })
 }

@@ -53,6 +53,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
             lacunarity: 2.0,
             diminish: 1.0,
             seed: lower.integer(node, "seed"),
+            period: 0,
         };
         let position = position(lower, node);
         let field = lattice::filtered(lower, &position, octaves);

@@ -114,9 +114,9 @@ fn range_text(port: &PortSpec) -> String {
 fn output_text(output: OutputType) -> &'static str {
     match output {
         OutputType::Exactly(ty) => ty.name(),
-        OutputType::Widest => "the widest of the inputs'",
+        OutputType::Widest | OutputType::Whole => "the widest of the inputs'",
+        OutputType::Named(_) => "the type that is named",
         OutputType::Stops => "that of the stops' values",
-        OutputType::Signature => "that of `signature`",
     }
 }
 
@@ -139,9 +139,9 @@ fn describe_node(def: &NodeDef) -> Value {
         .collect();
     let output = match spec.output {
         OutputType::Exactly(ty) => ty.name(),
-        OutputType::Widest => "widest",
+        OutputType::Widest | OutputType::Whole => "widest",
+        OutputType::Named(_) => "named",
         OutputType::Stops => "stops",
-        OutputType::Signature => "signature",
     };
     // An example that is no JSON would fail the tests; tools then get its text.
     let example: Value =

@@ -11,15 +11,7 @@ use crate::componentwise::{numbers, product, transfer};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "range",
-    aliases: &[
-        "remap",
-        "map_range",
-        "maprange",
-        "levels",
-        "fit",
-        "histogram_range",
-        "contrast",
-    ],
+    aliases: &["remap", "map_range", "maprange", "fit", "histogram_range"],
     category: Category::Transfer,
     summary: "Maps one range of numbers to another.",
     doc: Doc {

@@ -8,7 +8,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "subtract",
-    aliases: &["minus", "sub"],
+    aliases: &["sub"],
     category: Category::Arithmetic,
     summary: "The difference of two signals.",
     doc: Doc {

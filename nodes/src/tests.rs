@@ -1,5 +1,8 @@
 //! Laws that every node keeps, and the far fields that are known.
 
+mod combination;
+mod law;
+
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -519,7 +522,7 @@ fn coordinates_keep_their_detail_far_from_the_origin() {
 }
 
 #[test]
-fn a_checkerboard_is_color1_where_the_cells_are_even() {
+fn a_checkerboard_is_color2_where_the_cells_are_even() {
     let graph = json!({
         "version": 1, "name": "board",
         "nodes": { "b": { "type": "checkerboard", "inputs": { "uvtiling": [4, 2], "uvoffset": [1, 0] } } },
@@ -540,8 +543,39 @@ fn a_checkerboard_is_color1_where_the_cells_are_even() {
         near(
             "square",
             *value,
-            f64::from(u8::from(cells.rem_euclid(2) == 0)),
+            f64::from(u8::from(cells.rem_euclid(2) == 1)),
             1e-6,
         );
     }
+}
+
+#[test]
+fn a_mix_with_a_number_is_linear_in_both() {
+    let of = |node: Value| {
+        let source = json!({ "type": "test_gaussian", "inputs": { "pivot": 0.3, "spread": 0.5 } });
+        moments(json!({ "x": source, "y": node }), "y")
+    };
+    let x = json!({ "node": "x" });
+    let (mean, variance) = of(json!({ "type": "mix", "inputs": { "bg": x, "fg": 1, "mix": 0.5 } }));
+    near("mix", mean, 0.65, 1e-6);
+    near("variance of mix", variance, 0.25 * 0.25, 1e-6);
+}
+
+#[test]
+fn transfers_of_one_signal_share_their_distortion() {
+    // |X| + X² of a standard normal: 1 − 2/π + 2 + 2 (E|X|³ − E|X|).
+    let graph = json!({
+        "x": { "type": "test_gaussian" },
+        "fold": { "type": "absval", "inputs": { "in": { "node": "x" } } },
+        "square": { "type": "power", "inputs": { "in1": { "node": "x" }, "in2": 2 } },
+        "y": { "type": "add", "inputs": { "in1": { "node": "fold" }, "in2": { "node": "square" } } }
+    });
+    let (_, variance) = moments(graph, "y");
+    let folded = (2.0 / std::f64::consts::PI).sqrt();
+    near(
+        "|X| + X²",
+        variance,
+        3.0 - folded * folded + 2.0 * folded,
+        1e-4,
+    );
 }

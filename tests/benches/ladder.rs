@@ -1,7 +1,7 @@
 //! The noise ladder: one noise through one map, footprints from 0.01 to 0.8 wavelengths.
 //!
 //! `cargo bench -p mipless-tests --bench ladder` prints Markdown: the RMS error of each method over
-//! the footprints, in thousandths of the map's range, against 4096 samples a pixel.
+//! the footprints and three seeds, in thousandths of the map's range, against 4096 samples a pixel.
 
 use mipless::{Footprint, Method, Options, PixelFilter, Texture};
 use mipless_codegen::cpu::{Evaluator, Scratch};
@@ -9,7 +9,10 @@ use rayon::prelude::*;
 
 /// Standard deviations of the footprint, in wavelengths.
 const SIZES: [f32; 9] = [0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.35, 0.5, 0.8];
-const PIXELS: usize = 1500;
+/// The noises' seeds.
+const SEEDS: [u32; 3] = [0, 1, 2];
+/// Pixels of each seed.
+const PIXELS: usize = 700;
 const METHODS: [Method; 8] = [
     Method::Naive,
     Method::Ensemble,
@@ -59,17 +62,22 @@ fn main() {
     println!("|---|---|{}", "---|".repeat(METHODS.len()));
     for (source, frequency) in [("spectralnoise2d", 1.0), ("noise2d", 1.53)] {
         for (name, map, range) in MAPS {
-            let texture = Texture::from_json(&format!(
-                r#"{{"version":1,"name":"ladder","nodes":{{"n":{{"type":"{source}","inputs":{{"amplitude":4,"frequency":{frequency}}}}},{map}}},"outputs":{{"out":{{"node":"o"}}}}}}"#
-            ))
-            .expect("the graph has no mistakes");
-            let squares: Vec<Vec<f64>> = SIZES
+            let textures = SEEDS.map(|seed| {
+                Texture::from_json(&format!(
+                    r#"{{"version":1,"name":"ladder","nodes":{{"n":{{"type":"{source}","inputs":{{"amplitude":4,"frequency":{frequency},"seed":{seed}}}}},{map}}},"outputs":{{"out":{{"node":"o"}}}}}}"#
+                ))
+                .expect("the graph has no mistakes")
+            });
+            let runs: Vec<(usize, f32)> = (0..SEEDS.len())
+                .flat_map(|seed| SIZES.map(|size| (seed, size)))
+                .collect();
+            let squares: Vec<Vec<f64>> = runs
                 .par_iter()
-                .map(|&size| errors(&texture, size, range))
+                .map(|&(seed, size)| errors(&textures[seed], size, range))
                 .collect();
             let totals: Vec<String> = (0..METHODS.len())
                 .map(|i| {
-                    let mean = squares.iter().map(|s| s[i]).sum::<f64>() / SIZES.len() as f64;
+                    let mean = squares.iter().map(|s| s[i]).sum::<f64>() / runs.len() as f64;
                     format!("{:.1}", 1e3 * mean.sqrt())
                 })
                 .collect();

@@ -2,7 +2,7 @@
 
 use crate::random::Random;
 use mipless::{NodeSpec, Type};
-use mipless_graph::{OutputType, PortSpec, PortType, SIGNATURE};
+use mipless_graph::{OutputType, PortSpec, PortType};
 use serde_json::{Map, Value, json};
 
 /// A node that was made: its name and the type of its output.
@@ -46,7 +46,8 @@ fn inputs(random: &mut Random, spec: &NodeSpec, made: &[Made]) -> (Map<String, V
     let mut stops = Type::Float;
     for port in spec.inputs {
         let choice = random.unit();
-        if choice < 0.15 && !matches!(port.ty, PortType::Any) {
+        let typed = port.ty == PortType::Any || spec.output == OutputType::Named(port.name);
+        if choice < 0.15 && !typed {
             continue;
         }
         let value = match port.ty {
@@ -84,11 +85,12 @@ fn inputs(random: &mut Random, spec: &NodeSpec, made: &[Made]) -> (Map<String, V
     }
     let ty = match spec.output {
         OutputType::Exactly(ty) => ty,
-        OutputType::Widest => widest,
-        OutputType::Stops => stops,
-        OutputType::Signature => (inputs.get(SIGNATURE).and_then(Value::as_str))
+        OutputType::Widest | OutputType::Whole => widest,
+        OutputType::Named(port) => inputs[port]
+            .as_str()
             .and_then(Type::by_name)
-            .unwrap_or(Type::Color3),
+            .expect("a choice names a type"),
+        OutputType::Stops => stops,
     };
     (inputs, ty)
 }

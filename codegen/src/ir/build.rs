@@ -12,8 +12,8 @@
 
 use super::prune::without_dead_code;
 use super::{
-    Constant, Function, FunctionId, Inst, Module, Numbers, Op, Parameter, Table, Type, Value,
-    op::fold_constants,
+    Constant, Function, FunctionId, Inst, Library, Module, Numbers, Op, Parameter, Table, Type,
+    Value, op::fold_constants,
 };
 use hashbrown::{HashTable, hash_table::Entry};
 use rustc_hash::{FxBuildHasher, FxHashMap};
@@ -34,8 +34,8 @@ pub struct Builder {
     function: Function,
     /// The definitions by their hash: equal instructions are found, not stored twice.
     cons: HashTable<u32>,
-    /// The module's function that multiplies a position, where the module has it.
-    pub(crate) scale_position: Option<FunctionRef>,
+    /// The functions that the module's functions share, where it has any.
+    pub(super) library: Option<Library>,
 }
 
 impl Builder {
@@ -52,8 +52,14 @@ impl Builder {
                 results: Vec::new(),
             },
             cons: HashTable::new(),
-            scale_position: None,
+            library: None,
         }
+    }
+
+    /// Shared rules become calls of functions of `library` from here on.
+    pub(crate) fn with_library(mut self, library: Library) -> Self {
+        self.library = Some(library);
+        self
     }
 
     /// A further parameter.
@@ -111,6 +117,11 @@ impl Builder {
         self.function.constant(value).and_then(Constant::as_f32)
     }
 
+    /// The constant that a value is, if it is one.
+    pub(super) fn constant_of(&self, value: Value) -> Option<Constant> {
+        self.function.constant(value)
+    }
+
     /// Whether a value is the f32 constant 0.
     pub fn is_zero(&self, value: Value) -> bool {
         self.as_constant(value) == Some(0.0)
@@ -137,7 +148,7 @@ impl Builder {
         }
     }
 
-    fn constant(&mut self, ty: Type, bits: u32) -> Value {
+    pub(super) fn constant(&mut self, ty: Type, bits: u32) -> Value {
         self.push(Inst::Const(Constant { ty, bits }), ty)
     }
 
@@ -187,23 +198,44 @@ impl Builder {
         if let Some(value) = self.simplified(op, padded) {
             return value;
         }
-        if is_commutative(op) && padded[0] > padded[1] {
-            padded.swap(0, 1);
-            padded[2] = padded[0];
+        self.ordered(op, padded)
+    }
+
+    /// An op whose every bit is kept: constants alone are folded, and real results only with
+    /// `folds`, since they are computed in f32.
+    pub(super) fn exact(&mut self, op: Op, operands: [Value; 3], folds: bool) -> Value {
+        let ty = op.info().result;
+        if (folds || ty != Type::F32)
+            && let Some(bits) = self.folded(op, operands)
+            && (ty != Type::F32 || f32::from_bits(bits).is_finite())
+        {
+            return self.constant(ty, bits);
         }
-        self.push(Inst::Op(op, padded), info.result)
+        self.ordered(op, operands)
+    }
+
+    fn ordered(&mut self, op: Op, mut operands: [Value; 3]) -> Value {
+        if is_commutative(op) && operands[0] > operands[1] {
+            operands.swap(0, 1);
+            operands[2] = operands[0];
+        }
+        self.push(Inst::Op(op, operands), op.info().result)
+    }
+
+    /// The bits of an op of constants.
+    fn folded(&self, op: Op, operands: [Value; 3]) -> Option<u32> {
+        let count = op.info().operands.len();
+        let mut bits = [0; 3];
+        for (bits, &operand) in bits.iter_mut().zip(&operands[..count]) {
+            *bits = self.function.constant(operand)?.bits;
+        }
+        Some(fold_constants(op, bits))
     }
 
     /// What a simpler value an op is, if one of the laws applies.
     fn simplified(&mut self, op: Op, [a, b, c]: [Value; 3]) -> Option<Value> {
-        let operands = op.info().operands.len();
         let constants = [a, b, c].map(|v| self.function.constant(v));
-        if let [Some(ca), cb, cc] = constants
-            && (operands < 2 || cb.is_some())
-            && (operands < 3 || cc.is_some())
-        {
-            let bits = [ca.bits, cb.map_or(0, |c| c.bits), cc.map_or(0, |c| c.bits)];
-            let result = fold_constants(op, bits);
+        if let Some(result) = self.folded(op, [a, b, c]) {
             let ty = op.info().result;
             if ty == Type::F32 {
                 let number = f32::from_bits(result);

@@ -23,7 +23,12 @@ pub struct Numbers {
 struct Shared {
     data: OnceLock<Vec<f32>>,
     compute: Option<Box<dyn Fn() -> Vec<f32> + Send + Sync>>,
+    /// Measures the largest error of what is read from the numbers.
+    measure: Option<Measure>,
+    error: OnceLock<f64>,
 }
+
+type Measure = Box<dyn Fn(&[f32]) -> f64 + Send + Sync>;
 
 impl Numbers {
     /// `len` numbers that `compute` gives when they are first read.
@@ -32,11 +37,33 @@ impl Numbers {
         let shared = Shared {
             data: OnceLock::new(),
             compute: Some(compute),
+            measure: None,
+            error: OnceLock::new(),
         };
         Self {
             len,
             shared: Arc::new(shared),
         }
+    }
+
+    /// The same numbers, whose [`Self::error`] this function of them measures.
+    ///
+    /// # Panics
+    /// If the numbers have been cloned: a bug of the caller.
+    pub fn with_error(self, measure: impl Fn(&[f32]) -> f64 + Send + Sync + 'static) -> Self {
+        let mut shared = Arc::into_inner(self.shared).expect("new numbers are not shared");
+        shared.measure = Some(Box::new(measure));
+        Self {
+            len: self.len,
+            shared: Arc::new(shared),
+        }
+    }
+
+    /// The largest error of what is read from the numbers, in the units of what they stand for;
+    /// `None` where they are exact. Computes the numbers, and measures when first asked.
+    pub fn error(&self) -> Option<f64> {
+        let measure = self.shared.measure.as_ref()?;
+        Some(*self.shared.error.get_or_init(|| measure(self)))
     }
 
     /// How many numbers; computes none.
@@ -58,6 +85,8 @@ impl From<Vec<f32>> for Numbers {
             shared: Arc::new(Shared {
                 data: OnceLock::from(data),
                 compute: None,
+                measure: None,
+                error: OnceLock::new(),
             }),
         }
     }

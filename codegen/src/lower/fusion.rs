@@ -59,7 +59,9 @@ impl<'a> Compiler<'a> {
             tables: Default::default(),
             tabulated: Default::default(),
             fused: Default::default(),
+            maps: Default::default(),
             levels: Default::default(),
+            library: self.library.clone(),
         }
     }
 }

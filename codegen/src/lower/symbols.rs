@@ -2,7 +2,7 @@
 
 use super::Bundle;
 use crate::ir::Builder;
-use crate::moments::Symbol;
+use crate::moments::{Signal, Symbol};
 use mipless_graph::{Graph, OutputType, Source};
 use rustc_hash::FxHashMap;
 
@@ -64,11 +64,20 @@ pub(super) struct Carriers {
     counts: FxHashMap<Symbol, u32>,
 }
 
-fn symbols(bundle: &Bundle) -> Vec<Symbol> {
-    let mut all: Vec<Symbol> = bundle
-        .iter()
-        .flat_map(|signal| signal.shared.iter().map(|&(s, _)| s))
-        .collect();
+/// The symbols that a bundle's signals carry.
+fn carried(bundle: &Bundle) -> Vec<Symbol> {
+    let shared = |signal: &Signal| signal.shared.iter().map(|&(s, _)| s).collect::<Vec<_>>();
+    distinct(bundle.iter().flat_map(shared))
+}
+
+/// The same with those of their second Hermite polynomials, which a transfer of them carries.
+fn held(bundle: &Bundle) -> Vec<Symbol> {
+    let hermites = bundle.iter().filter_map(|signal| signal.hermite);
+    distinct(hermites.chain(carried(bundle)))
+}
+
+fn distinct(symbols: impl Iterator<Item = Symbol>) -> Vec<Symbol> {
+    let mut all: Vec<Symbol> = symbols.collect();
     all.sort_unstable();
     all.dedup();
     all
@@ -76,13 +85,18 @@ fn symbols(bundle: &Bundle) -> Vec<Symbol> {
 
 impl Carriers {
     pub(super) fn born(&mut self, bundle: &Bundle) {
-        for symbol in symbols(bundle) {
+        for symbol in held(bundle) {
             *self.counts.entry(symbol).or_default() += 1;
         }
     }
 
+    /// A symbol that a bundle which is born already holds from now on.
+    pub(super) fn gained(&mut self, symbol: Symbol) {
+        *self.counts.entry(symbol).or_default() += 1;
+    }
+
     pub(super) fn died(&mut self, bundle: &Bundle) {
-        for symbol in symbols(bundle) {
+        for symbol in held(bundle) {
             if let Some(count) = self.counts.get_mut(&symbol) {
                 *count -= 1;
             }
@@ -90,8 +104,8 @@ impl Carriers {
     }
 
     /// Folds into private variance what only this bundle carries (and, where its components are
-    /// `crossed` later, only one of them), but for the symbols from `kept` on, and whatever exceeds
-    /// the limit.
+    /// `crossed` later, only one of them), and whatever exceeds the limit. Of the symbols from `kept`
+    /// on, which several nodes are about to read, it makes one.
     pub(super) fn retire(
         &mut self,
         b: &mut Builder,
@@ -99,20 +113,26 @@ impl Carriers {
         kept: Symbol,
         crossed: bool,
     ) {
-        for symbol in symbols(bundle) {
+        let mut merged = Vec::new();
+        for symbol in carried(bundle) {
             let only = self.counts.get(&symbol) == Some(&1);
             let holders = bundle
                 .iter()
                 .filter(|s| s.coefficient(symbol).is_some())
                 .count();
-            if only && (holders == 1 || !crossed) && symbol < kept {
-                for signal in bundle.iter_mut() {
-                    signal.retire(b, symbol);
+            if only && (holders == 1 || !crossed) {
+                if symbol < kept {
+                    for signal in bundle.iter_mut() {
+                        signal.retire(b, symbol);
+                    }
+                    self.counts.remove(&symbol);
+                } else {
+                    merged.push(symbol);
                 }
-                self.counts.remove(&symbol);
             }
         }
         for signal in bundle.iter_mut() {
+            signal.merge(b, &merged);
             while signal.shared.len() > MOST {
                 let oldest = signal.shared[0].0;
                 signal.retire(b, oldest);

@@ -1,6 +1,6 @@
 //! Maxima and minima of two signals (Clark 1961).
 
-use super::{Algebra, Normal, Signal};
+use super::{Algebra, Normal, Signal, spread};
 
 impl Algebra {
     /// max(X, Y): with a = (m_X − m_Y)/θ, θ² = Var(X − Y): mean m_Y + θ(aΦ(a) + φ(a)),
@@ -30,8 +30,7 @@ impl Algebra {
         }
         self.bent = true;
         let variance = difference.variance(b);
-        let (sd, inverse) = self.spread(variance);
-        let b = &mut self.b;
+        let (sd, inverse) = spread(b, variance);
         let normal = Normal::at(b, difference.mean, inverse);
         let hinge = normal.hinge(b, difference.mean, sd);
         let (of_x, of_y) = (x.scale(b, normal.below), y.scale(b, normal.above));

@@ -1,16 +1,22 @@
-//! Piecewise linear functions with jumps, and smooth-step segments, in closed form.
+//! Piecewise linear functions with jumps, and cubic segments, in closed form.
 //!
-//! T(x) = c₀ + d₀x + Σ_k [J_k (x ≥ t_k) + B_k max(x − t_k, 0)] + Σ_j Δ_j s(τ_j),
-//! τ_j = (x − t_j)/(t_{j+1} − t_j), s(τ) = 3τ² − 2τ³ − τ on [0, 1], else 0. With z_k = (m − t_k)/σ:
+//! T(x) = c₀ + d₀x + Σ_k [J_k (x ≥ t_k) + B_k max(x − t_k, 0)] + Σ_j c_j(τ_j),
+//! τ_j = (x − t_j)/(t_{j+1} − t_j), c(τ) = τ(1 − τ)(p(1 − τ) − qτ) on [0, 1], else 0. With z_k = (m − t_k)/σ:
 //! E[T] = c₀ + d₀m + Σ J_k Φ(z_k) + B_k σ(z_k Φ(z_k) + φ(z_k)) + …, and its derivatives by m
 //! (MATH §6; RULES, transfers).
 
+mod cubic;
 mod distortion;
 mod segment;
 
-use super::{Gaussian, Moments, Normal, Transfer, signal::UNBOUNDED};
+use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer, signal::UNBOUNDED};
 use crate::ir::{Builder, Value};
 use segment::Segment;
+use smallvec::smallvec;
+
+pub(super) use distortion::Residual;
+pub use segment::Bump;
+pub(super) use segment::probability;
 
 /// Where a piecewise function jumps or bends.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +38,9 @@ pub struct Piecewise {
     pub slope: Value,
     /// The knots, sorted.
     pub knots: Vec<Knot>,
-    /// Δ for the segments between neighbouring knots; empty where every segment is straight.
-    pub smooth: Vec<Value>,
+    /// The bumps of the segments between neighbouring knots, monotone on top of the straight ones;
+    /// empty where every segment is straight.
+    pub bumps: Vec<Bump>,
 }
 
 impl Piecewise {
@@ -49,7 +56,23 @@ impl Piecewise {
             offset: zero,
             slope: zero,
             knots,
-            smooth: Vec::new(),
+            bumps: Vec::new(),
+        }
+    }
+
+    /// max(x, 0).
+    pub fn hinge(b: &mut Builder) -> Self {
+        let (zero, one) = (b.f32(0.0), b.f32(1.0));
+        let knots = vec![Knot {
+            at: zero,
+            jump: zero,
+            bend: one,
+        }];
+        Self {
+            offset: zero,
+            slope: zero,
+            knots,
+            bumps: Vec::new(),
         }
     }
 
@@ -65,7 +88,27 @@ impl Piecewise {
             offset: zero,
             slope: minus,
             knots,
-            smooth: Vec::new(),
+            bumps: Vec::new(),
+        }
+    }
+
+    /// |x| with its corner rounded by a parabola: (x² + k²)/2k where |x| < k = `width`.
+    pub fn rounded(b: &mut Builder, width: Value) -> Self {
+        let least = b.f32(1e-6);
+        let width = b.max(width, least);
+        let (zero, one, minus) = (b.f32(0.0), b.f32(1.0), b.f32(-1.0));
+        let (low, span) = (b.neg(width), b.add(width, width));
+        let knots = [low, width].map(|at| Knot {
+            at,
+            jump: zero,
+            bend: one,
+        });
+        let start = b.neg(span);
+        Self {
+            offset: zero,
+            slope: minus,
+            knots: knots.to_vec(),
+            bumps: vec![Bump { start, end: span }],
         }
     }
 
@@ -89,7 +132,7 @@ impl Piecewise {
             offset: low,
             slope: zero,
             knots,
-            smooth: Vec::new(),
+            bumps: Vec::new(),
         }
     }
 
@@ -106,7 +149,8 @@ impl Piecewise {
     pub fn ramp(b: &mut Builder, stops: &[(Value, Value)], shape: Shape) -> Self {
         let zero = b.f32(0.0);
         let mut knots: Vec<Knot> = Vec::new();
-        let mut smooth = Vec::new();
+        let mut bumps = Vec::new();
+        let mut secants = Vec::new();
         let mut before = zero;
         for (i, &(at, value)) in stops.iter().enumerate() {
             let (mut jump, mut after) = (zero, zero);
@@ -126,6 +170,10 @@ impl Piecewise {
                 let slope = b.div(difference, guarded);
                 after = b.select(distinct, slope, zero);
                 difference = b.select(distinct, difference, zero);
+                secants.push(cubic::Secant {
+                    slope: after,
+                    width: guarded,
+                });
             }
             if shape != Shape::Constant && i > 0 {
                 let (previous_at, previous) = stops[i - 1];
@@ -138,16 +186,19 @@ impl Piecewise {
             let bend = b.sub(after, before);
             knots.push(Knot { at, jump, bend });
             if shape == Shape::Smooth && i + 1 < stops.len() {
-                smooth.push(difference);
+                bumps.push(Bump::smooth(b, difference));
             }
             before = after;
+        }
+        if shape == Shape::Cubic {
+            bumps = cubic::monotone(b, &secants);
         }
         let slope = zero;
         Self {
             offset: stops[0].1,
             slope,
             knots,
-            smooth,
+            bumps,
         }
     }
 
@@ -160,8 +211,8 @@ impl Piecewise {
             knot.jump = b.mul(knot.jump, a);
             knot.bend = b.mul(knot.bend, a);
         }
-        for height in &mut self.smooth {
-            *height = b.mul(*height, a);
+        for bump in &mut self.bumps {
+            *bump = bump.scale(b, a);
         }
         self
     }
@@ -169,7 +220,7 @@ impl Piecewise {
     /// The same function on `range`, without the knots that no input reaches: a ramp over all of a
     /// bounded signal is linear there.
     fn within(&self, b: &mut Builder, [low, high]: [f32; 2]) -> Self {
-        if !self.smooth.is_empty() {
+        if !self.bumps.is_empty() {
             return self.clone();
         }
         let mut out = Self {
@@ -219,10 +270,10 @@ impl Piecewise {
     }
 
     fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
-        (self.smooth.iter().zip(self.knots.windows(2))).map(|(&height, pair)| Segment {
+        (self.bumps.iter().zip(self.knots.windows(2))).map(|(&bump, pair)| Segment {
             from: pair[0].at,
             to: pair[1].at,
-            height,
+            bump,
         })
     }
 }
@@ -236,6 +287,8 @@ pub enum Shape {
     Linear,
     /// 3τ² − 2τ³.
     Smooth,
+    /// A cubic with continuous slopes that overshoots no stop.
+    Cubic,
 }
 
 impl Transfer for Piecewise {
@@ -310,6 +363,42 @@ impl Transfer for Piecewise {
         out
     }
 
+    fn shared(&self, b: &mut Builder, range: [f32; 2]) -> Option<SharedTransfer> {
+        let t = self.within(b, range);
+        let mut values = smallvec![t.offset, t.slope];
+        for knot in &t.knots {
+            values.extend([knot.at, knot.jump, knot.bend]);
+        }
+        values.extend(t.bumps.iter().flat_map(|bump| [bump.start, bump.end]));
+        Some(SharedTransfer {
+            name: "piecewise",
+            doc: "A piecewise function of a signal.",
+            variant: t.knots.len() as u32,
+            values,
+            rebuild: |knots, values| {
+                let (line, rest) = values.split_at(2);
+                let (knots, bumps) = rest.split_at(3 * knots as usize);
+                Box::new(Self {
+                    offset: line[0],
+                    slope: line[1],
+                    knots: (knots.chunks_exact(3))
+                        .map(|k| Knot {
+                            at: k[0],
+                            jump: k[1],
+                            bend: k[2],
+                        })
+                        .collect(),
+                    bumps: (bumps.chunks_exact(2))
+                        .map(|p| Bump {
+                            start: p[0],
+                            end: p[1],
+                        })
+                        .collect(),
+                })
+            },
+        })
+    }
+
     fn binary(&self, b: &Builder) -> Option<[f32; 2]> {
         let [knot] = self.knots[..] else { return None };
         let flat = b.is_zero(self.slope) && b.is_zero(knot.bend);
@@ -318,8 +407,7 @@ impl Transfer for Piecewise {
     }
 
     fn range(&self, b: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
-        // Linear between knots and monotone on smooth segments: the extremes are at knots (either
-        // side) and at the ends.
+        // The extremes are at knots (either side), at the ends, and where the slope of a cubic is 0.
         let constant = |v: Value| b.as_constant(v);
         let (Some(offset), Some(slope)) = (constant(self.offset), constant(self.slope)) else {
             return UNBOUNDED;
@@ -364,6 +452,18 @@ impl Transfer for Piecewise {
                 range = [range[0].min(y), range[1].max(y)];
             }
         }
+        for (i, bump) in self.bumps.iter().enumerate() {
+            let (Some(p), Some(q)) = (constant(bump.start), constant(bump.end)) else {
+                return UNBOUNDED;
+            };
+            let (from, to) = (knots[i][0], knots[i + 1][0]);
+            let ends = [value(from, true), value(to, false)];
+            for turn in turns(ends[1] - ends[0], p, q) {
+                let y = ends[0] + turn * (ends[1] - ends[0]);
+                let y = y + turn * (1.0 - turn) * (p * (1.0 - turn) - q * turn);
+                range = [range[0].min(y), range[1].max(y)];
+            }
+        }
         if !self.knots.is_empty() {
             // Rounding of sums of slopes must not push a clamp inside the function's range.
             let slack = 1e-6 * range[0].abs().max(range[1].abs());
@@ -371,4 +471,20 @@ impl Transfer for Piecewise {
         }
         range
     }
+}
+
+/// Where in (0, 1) the slope of a straight segment with a bump is 0:
+/// rise + p − 2(2p + q)τ + 3(p + q)τ² = 0.
+fn turns(rise: f32, p: f32, q: f32) -> impl Iterator<Item = f32> {
+    let (a, half, c) = (3.0 * (p + q), -(2.0 * p + q), rise + p);
+    let root = (half * half - a * c).max(0.0).sqrt();
+    // The root of larger magnitude first: neither of the two loses digits.
+    let larger = if half < 0.0 {
+        root - half
+    } else {
+        -root - half
+    };
+    [larger / a, c / larger]
+        .into_iter()
+        .filter(|t| *t > 0.0 && *t < 1.0)
 }

@@ -5,7 +5,7 @@
 //! that partial products are exact, and each gives its integer part to the cell. Nothing here
 //! depends on an order of evaluation that a shader compiler may change.
 
-use crate::ir::{Builder, FunctionRef, Module, Type, Value};
+use crate::ir::{Builder, SharedFunction, Value};
 
 /// The mean of a position: an integer part, if it is carried, and the rest.
 pub(super) type Mean = (Option<Value>, Value);
@@ -31,18 +31,6 @@ pub(super) fn add(b: &mut Builder, x: Mean, y: Mean) -> Mean {
     }
 }
 
-/// The product of a position and any number, as a function of the module.
-pub(crate) fn scale_function(module: &mut Module) -> FunctionRef {
-    let doc = "A position times a number: the integer part, and the rest in [0, 1).";
-    let mut b = Builder::new("scale_position", doc);
-    let cell = b.param("cell", Type::I32);
-    let (fraction, by) = (b.param_f32("fraction"), b.param_f32("by"));
-    let (cell, fraction) = scale(&mut b, (Some(cell), fraction), by);
-    b.result("cell", cell.expect("a position keeps its cell"));
-    b.result("fraction", fraction);
-    b.finish(module)
-}
-
 /// The product of a position and a number. Cells up to 2²³ and factors keep all bits of the
 /// fraction of the result; beyond, detail is lost gradually.
 pub(super) fn scale(b: &mut Builder, x: Mean, by: Value) -> Mean {
@@ -58,12 +46,24 @@ pub(super) fn scale(b: &mut Builder, x: Mean, by: Value) -> Mean {
         let cell = b.mul_i(cell, whole);
         return carry(b, cell, scaled);
     }
-    if let Some(function) = b.scale_position.clone() {
-        let [cell, fraction] = b.call(&function, &[cell, fraction, by])[..] else {
-            panic!("a position has two parts")
-        };
-        return (Some(cell), fraction);
-    }
+    let [cell, fraction] = b.shared(
+        SharedFunction {
+            name: "scale_position",
+            variant: 0,
+            doc: "A position times a number: the integer part, and the rest in [0, 1).",
+        },
+        &[("cell", cell), ("fraction", fraction), ("by", by)],
+        |b, v| {
+            let (cell, fraction) = scale_any(b, v[0], v[1], v[2]);
+            [("cell", cell), ("fraction", fraction)]
+        },
+    );
+    (Some(cell), fraction)
+}
+
+/// [`scale`] by a number that is not known.
+fn scale_any(b: &mut Builder, cell: Value, fraction: Value, by: Value) -> (Value, Value) {
+    let scaled = b.mul(fraction, by);
     let (mask, shift) = (b.i32(0xfff), b.u32(12));
     let (low, high) = (b.and_i(cell, mask), b.shr_i(cell, shift));
     let (low, high) = (b.float_i(low), b.float_i(high));
@@ -81,5 +81,6 @@ pub(super) fn scale(b: &mut Builder, x: Mean, by: Value) -> Mean {
             rest = b.add(rest, fraction);
         }
     }
-    carry(b, sum, rest)
+    let (cell, fraction) = carry(b, sum, rest);
+    (cell.expect("a position keeps its cell"), fraction)
 }

@@ -112,7 +112,14 @@ impl Signal {
     /// ½‖H‖² + Σ c² + private: the variance beyond the linear response.
     pub fn other_variance(&self, b: &mut Builder) -> Value {
         let second = half_contraction(b, self.h, self.h);
-        let mut sum = b.add(second, self.private);
+        let own = b.add(second, self.private);
+        let shared = self.shared_variance(b);
+        b.add(own, shared)
+    }
+
+    /// Σ c²: the variance of shared symbols.
+    pub(super) fn shared_variance(&self, b: &mut Builder) -> Value {
+        let mut sum = b.f32(0.0);
         for &(_, c) in &self.shared {
             let square = b.square(c);
             sum = b.add(sum, square);
@@ -130,18 +137,26 @@ impl Signal {
     /// The covariance with another signal: the dot product of the coefficients.
     pub fn covariance(&self, b: &mut Builder, other: &Self) -> Covariance {
         let linear = b.dot(&self.g, &other.g);
-        let mut rest = half_contraction(b, self.h, other.h);
-        for &(symbol, c) in &self.shared {
-            if let Some(d) = other.coefficient(symbol) {
-                let product = b.mul(c, d);
-                rest = b.add(rest, product);
-            }
-        }
+        let second = half_contraction(b, self.h, other.h);
+        let shared = self.shared_covariance(b, other);
+        let rest = b.add(second, shared);
         Covariance {
             linear,
             rest,
             total: b.add(linear, rest),
         }
+    }
+
+    /// Σ c d over the symbols that both carry.
+    pub(super) fn shared_covariance(&self, b: &mut Builder, other: &Self) -> Value {
+        let mut sum = b.f32(0.0);
+        for &(symbol, c) in &self.shared {
+            if let Some(d) = other.coefficient(symbol) {
+                let product = b.mul(c, d);
+                sum = b.add(sum, product);
+            }
+        }
+        sum
     }
 
     /// The coefficient of a shared symbol.
@@ -243,6 +258,38 @@ impl Signal {
         }
     }
 
+    /// `other` where the condition holds, else this.
+    pub(super) fn select(&self, b: &mut Builder, condition: Value, other: &Self) -> Self {
+        let (x, y) = (self.flat(b), other.flat(b));
+        let zero = b.f32(0.0);
+        let mut symbols: SmallVec<[Symbol; 4]> = (x.shared.iter().chain(&y.shared))
+            .map(|&(symbol, _)| symbol)
+            .collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        let shared = symbols.into_iter().map(|symbol| {
+            let [c, d] = [&x, &y].map(|signal| signal.coefficient(symbol).unwrap_or(zero));
+            (symbol, b.select(condition, d, c))
+        });
+        let shared = shared.collect();
+        let mut pick = |c: Value, d: Value| b.select(condition, d, c);
+        Self {
+            mean: pick(x.mean, y.mean),
+            cell: None,
+            g: [pick(x.g[0], y.g[0]), pick(x.g[1], y.g[1])],
+            h: [
+                pick(x.h[0], y.h[0]),
+                pick(x.h[1], y.h[1]),
+                pick(x.h[2], y.h[2]),
+            ],
+            shared,
+            private: pick(x.private, y.private),
+            range: [x.range[0].min(y.range[0]), x.range[1].max(y.range[1])],
+            binary: None,
+            hermite: None,
+        }
+    }
+
     /// `−X`.
     pub fn negate(&self, b: &mut Builder) -> Self {
         let minus = b.f32(-1.0);
@@ -332,6 +379,27 @@ impl Signal {
             .position(|&(s, _)| s > symbol)
             .unwrap_or(self.shared.len());
         self.shared.insert(at, (symbol, coefficient));
+    }
+
+    /// Makes one symbol, the first, of those of `symbols` that the signal carries.
+    pub(crate) fn merge(&mut self, b: &mut Builder, symbols: &[Symbol]) {
+        let mine: Vec<(Symbol, Value)> = (self.shared.iter().copied())
+            .filter(|(symbol, _)| symbols.contains(symbol))
+            .collect();
+        let [(first, start), rest @ ..] = &mine[..] else {
+            return;
+        };
+        if rest.is_empty() {
+            return;
+        }
+        let mut sum = b.square(*start);
+        for (_, coefficient) in rest {
+            let square = b.square(*coefficient);
+            sum = b.add(sum, square);
+        }
+        let (first, root) = (*first, b.sqrt(sum));
+        self.shared.retain(|(symbol, _)| !symbols.contains(symbol));
+        self.push_shared(first, root);
     }
 
     /// Folds a shared symbol into the private variance.

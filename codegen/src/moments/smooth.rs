@@ -1,10 +1,11 @@
-//! Smooth transfers: sine, integer and real powers, the reciprocal.
+//! Smooth transfers: sine, exponential, integer and real powers, the reciprocal.
 
 use super::{
-    Gaussian, Moments, Normal, Transfer,
+    Curve, Gaussian, Moments, SharedTransfer, Transfer,
     signal::{UNBOUNDED, ordered},
 };
 use crate::ir::{Builder, Value};
+use smallvec::SmallVec;
 
 /// sin(x + phase), x in radians. E[sin] = sin(m) e^{−v/2}; exact for a Gaussian.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +80,69 @@ impl Transfer for Sine {
 
     fn period(&self) -> Option<f32> {
         Some(std::f32::consts::TAU)
+    }
+
+    fn shared(&self, _: &mut Builder, _: [f32; 2]) -> Option<SharedTransfer> {
+        (self.phase == 0.0).then(|| SharedTransfer {
+            name: "sine",
+            doc: "The sine of a signal.",
+            variant: 0,
+            values: SmallVec::new(),
+            rebuild: |_, _| Box::new(Self { phase: 0.0 }),
+        })
+    }
+}
+
+/// eˣ. E = M = e^{m + v/2}, D = M²(eᵛ − 1 − v); exact for a Gaussian.
+#[derive(Clone, Copy, Debug)]
+pub struct Exponential;
+
+impl Transfer for Exponential {
+    fn value(&self, b: &mut Builder, x: Value) -> Value {
+        let x = b.clamp(x, -80.0, 80.0);
+        b.exp(x)
+    }
+
+    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
+        let half = b.scale(x.variance, 0.5);
+        let exponent = b.add(x.mean, half);
+        let mean = self.value(b, exponent);
+        // eᵛ − 1 − v = v²/2 (1 + v/3 (1 + v/4 (1 + …))): by its series below 1, where it cancels.
+        let v = x.variance;
+        let one = b.f32(1.0);
+        let mut series = one;
+        for k in (3..=9).rev() {
+            let term = b.scale(v, 1.0 / k as f32);
+            let term = b.mul(term, series);
+            series = b.add(one, term);
+        }
+        let square = b.square(v);
+        let square = b.scale(square, 0.5);
+        let series = b.mul(square, series);
+        let direct = self.value(b, v);
+        let beyond = b.offset(v, 1.0);
+        let direct = b.sub(direct, beyond);
+        let small = b.lt(v, one);
+        let excess = b.select(small, series, direct);
+        let zero = b.f32(0.0);
+        let excess = b.max(excess, zero);
+        // M · (M · excess): the square of M alone overflows first.
+        let distortion = b.mul(mean, excess);
+        Moments {
+            mean,
+            slope: mean,
+            curvature: mean,
+            third: mean,
+            distortion: b.mul(mean, distortion),
+        }
+    }
+
+    fn range(&self, _: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
+        if high > 80.0 {
+            [low.exp(), f32::INFINITY]
+        } else {
+            [low.exp(), high.exp()]
+        }
     }
 }
 
@@ -217,25 +281,8 @@ fn sampled(
     }
 }
 
-/// How many σ a power is averaged over.
-const REACH: f32 = 4.75;
-
-/// Ten-point Gauss–Legendre on [0, 1].
-const NODES: [(f32, f32); 10] = [
-    (0.013_046_736, 0.033_335_67),
-    (0.067_468_32, 0.074_725_67),
-    (0.160_295_22, 0.109_543_18),
-    (0.283_302_3, 0.134_633_36),
-    (0.425_562_83, 0.147_762_11),
-    (0.574_437_17, 0.147_762_11),
-    (0.716_697_7, 0.134_633_36),
-    (0.839_704_78, 0.109_543_18),
-    (0.932_531_68, 0.074_725_67),
-    (0.986_953_26, 0.033_335_67),
-];
-
-/// max(x, 0) to a real power. By quadrature of the difference from a tangent over the part above 0:
-/// the mean is within 1e-3 of (|m| + σ)ᵖ for powers from 0.5 to 3.5.
+/// max(x, 0) to a real power. By the quadrature of [`Curve`] over the part above 0: the mean is
+/// within 1e-3 of (|m| + σ)ᵖ for powers from 0.5 to 3.5.
 #[derive(Clone, Copy, Debug)]
 pub struct RealPower {
     /// The exponent.
@@ -252,6 +299,17 @@ impl RealPower {
         let exponent = b.clamp(exponent, -80.0, 80.0);
         b.exp(exponent)
     }
+
+    fn curve(self, b: &mut Builder) -> Curve<impl Fn(&mut Builder, Value) -> Value + use<>> {
+        let zero = b.f32(0.0);
+        let below = self.value(b, zero);
+        Curve {
+            function: move |b: &mut Builder, x| self.value(b, x),
+            kinks: vec![zero],
+            flat: [Some(below), None],
+            range: UNBOUNDED,
+        }
+    }
 }
 
 impl Transfer for RealPower {
@@ -266,107 +324,8 @@ impl Transfer for RealPower {
     }
 
     fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        // The part above 0: z from `start` on, which holds the share `below` of the Gaussian.
-        let n = Normal::at(b, x.mean, x.inverse_sd);
-        let start = b.neg(n.z);
-        let start = b.clamp(start, -REACH, REACH);
-        let reach = b.f32(REACH);
-        let width = b.sub(reach, start);
-        // What is integrated is the difference from the tangent c + dσz at max(m, σ): constants and
-        // slopes are then exact, and a small σ leaves no part of them in the derivatives.
-        let touch = b.max(x.mean, x.sd);
-        let c = self.value(b, touch);
-        let d = b.div(c, touch);
-        let d = b.mul(d, self.power);
-        let rise = b.mul(d, x.sd);
-        let mut rows = Vec::with_capacity(NODES.len());
-        let mut total = b.f32(0.0);
-        for (node, weight) in NODES {
-            let step = b.scale(width, node);
-            let z = b.add(start, step);
-            let square = b.square(z);
-            let exponent = b.scale(square, -0.5);
-            let density = b.exp(exponent);
-            let weight = b.scale(density, weight);
-            total = b.add(total, weight);
-            let deviation = b.mul(x.sd, z);
-            let at = b.add(x.mean, deviation);
-            rows.push((z, square, weight, self.value(b, at)));
-        }
-        // The weights sum to the share.
-        let least = b.f32(1e-20);
-        let total = b.max(total, least);
-        let share = b.div(n.below, total);
-        let mut sums = [b.f32(0.0); 4];
-        for row in &mut rows {
-            let &mut (z, square, weight, value) = row;
-            row.2 = b.mul(weight, share);
-            let line = b.mul(rise, z);
-            let line = b.add(c, line);
-            let beyond = b.sub(value, line);
-            let first = b.mul(row.2, beyond);
-            let (second, third) = (b.offset(square, -1.0), b.offset(square, -3.0));
-            let third = b.mul(third, z);
-            let parts = [
-                first,
-                b.mul(first, z),
-                b.mul(first, second),
-                b.mul(first, third),
-            ];
-            for (sum, part) in sums.iter_mut().zip(parts) {
-                *sum = b.add(*sum, part);
-            }
-        }
-        // Below 0, at z < s = −m/σ, the power is 0 and the difference −(c + dσz), in closed form.
-        let s = b.neg(n.z);
-        let s2 = b.square(s);
-        let (one, edge) = (b.f32(1.0), b.mul(s, n.density));
-        let (less, more) = (b.sub(s2, one), b.add(s2, one));
-        let s3 = b.mul(s2, s);
-        let spread = b.sub(edge, n.above);
-        let (above, by_more) = (b.neg(n.above), b.mul(more, n.density));
-        let (by_less, by_cube) = (b.mul(less, n.density), b.mul(s3, n.density));
-        let rows_below = [
-            [above, n.density],
-            [n.density, spread],
-            [edge, by_more],
-            [by_less, by_cube],
-        ];
-        for (sum, row) in sums.iter_mut().zip(rows_below) {
-            let part = b.dot(&row, &[c, rise]);
-            *sum = b.add(*sum, part);
-        }
-        let [mean, first, second, third] = sums;
-        let (mean, first) = (b.add(mean, c), b.add(first, rise));
-        let mut distortion = b.f32(0.0);
-        for (z, _, weight, value) in rows {
-            let line = b.mul(first, z);
-            let line = b.add(mean, line);
-            let residual = b.sub(value, line);
-            let square = b.square(residual);
-            let part = b.mul(weight, square);
-            distortion = b.add(distortion, part);
-        }
-        // Below 0 the power is 0, and the residual is the line: ∫ (M + S z)² φ.
-        let edge = b.mul(n.z, n.density);
-        let spread = b.add(n.above, edge);
-        let twice = b.add(mean, mean);
-        let twice = b.mul(twice, n.density);
-        let (m2, s2) = (b.square(mean), b.square(first));
-        let cross = b.mul(twice, first);
-        let below = b.dot(&[m2, s2], &[n.above, spread]);
-        let below = b.sub(below, cross);
-        let zero = b.f32(0.0);
-        let below = b.max(below, zero);
-        let (inverse, inverse2) = (x.inverse_sd, b.square(x.inverse_sd));
-        let inverse3 = b.mul(inverse, inverse2);
-        Moments {
-            mean,
-            slope: b.mul(first, inverse),
-            curvature: b.mul(second, inverse2),
-            third: b.mul(third, inverse3),
-            distortion: b.add(distortion, below),
-        }
+        let curve = self.curve(b);
+        curve.moments(b, x)
     }
 
     fn range(&self, b: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {

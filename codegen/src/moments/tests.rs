@@ -4,9 +4,13 @@
 //! contribute to a signal of spread σ is E[T′]σ, E[T″]σ² and E[T‴]σ³, and the distortion's part is
 //! √D. So one tolerance a transfer holds all five over every σ.
 
+mod curves;
+mod piecewise;
+mod waves;
+
 use super::{
     Algebra, Gaussian, Knot, Mode, Piecewise, Polynomial, RealPower, Reciprocal, Shape, Sine,
-    SquareWave, Transfer,
+    SquareWave, Transfer, spread,
 };
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::float::Float;
@@ -21,7 +25,7 @@ fn module(make: Make<'_>, range: [f32; 2]) -> Module {
     let mut b = Builder::new("moments", "The moments of a transfer.");
     let (mean, variance) = (b.param_f32("m"), b.param_f32("v"));
     let mut algebra = Algebra::new(b, Mode::Quad);
-    let (sd, inverse_sd) = algebra.spread(variance);
+    let (sd, inverse_sd) = spread(&mut algebra.b, variance);
     let b = &mut algebra.b;
     let transfer = make(b);
     let moments = transfer.moments(
@@ -321,6 +325,7 @@ fn ramp_at(stops: &[(f32, f32)], shape: Shape, x: f64) -> f64 {
         Shape::Constant => y,
         Shape::Linear => y + t * (next - y),
         Shape::Smooth => y + t * t * (3.0 - 2.0 * t) * (next - y),
+        Shape::Cubic => panic!("cubic ramps have a test of their own"),
     }
 }
 
@@ -513,7 +518,7 @@ fn knots_beyond_the_inputs_range_do_not_matter() {
             offset: zero,
             slope: zero,
             knots,
-            smooth: Vec::new(),
+            bumps: Vec::new(),
         })
     };
     let points = grid(-1.0, 1.0, &[0.01, 0.1, 0.3]);

@@ -1,7 +1,15 @@
-//! Square waves, filtered by whichever series converges.
+//! Waves, filtered by whichever series converges; here the square one.
 
-use super::{Gaussian, Moments, Normal, Transfer};
+mod floor;
+mod linear;
+
+#[cfg(test)]
+pub(super) use floor::Staircase;
+pub use linear::{Corner, LinearWave};
+
+use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer};
 use crate::ir::{Builder, Value};
+use smallvec::smallvec;
 
 /// 1 where the fraction of x is below `width`, else 0; x in periods.
 ///
@@ -16,12 +24,13 @@ pub struct SquareWave {
 /// Where the two series meet, in periods.
 const CROSSOVER: f32 = 0.2;
 
-impl SquareWave {
-    fn fraction(b: &mut Builder, x: Value) -> Value {
-        let whole = b.floor(x);
-        b.sub(x, whole)
-    }
+/// x less the whole number below it.
+fn fraction(b: &mut Builder, x: Value) -> Value {
+    let whole = b.floor(x);
+    b.sub(x, whole)
+}
 
+impl SquareWave {
     /// The sum over edges: mean, slope, curvature, third.
     fn edges(&self, b: &mut Builder, u: Value, inverse: Value) -> [Value; 4] {
         let inverse2 = b.square(inverse);
@@ -104,14 +113,14 @@ impl SquareWave {
 
 impl Transfer for SquareWave {
     fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let fraction = Self::fraction(b, x);
+        let fraction = fraction(b, x);
         let (zero, one) = (b.f32(0.0), b.f32(1.0));
         let on = b.lt(fraction, self.width);
         b.select(on, one, zero)
     }
 
     fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let u = Self::fraction(b, x.mean);
+        let u = fraction(b, x.mean);
         let edges = self.edges(b, u, x.inverse_sd);
         let harmonics = self.harmonics(b, u, x.variance);
         let crossover = b.f32(CROSSOVER);
@@ -144,6 +153,16 @@ impl Transfer for SquareWave {
 
     fn period(&self) -> Option<f32> {
         Some(1.0)
+    }
+
+    fn shared(&self, _: &mut Builder, _: [f32; 2]) -> Option<SharedTransfer> {
+        Some(SharedTransfer {
+            name: "square_wave",
+            doc: "A square wave of a signal.",
+            variant: 0,
+            values: smallvec![self.width],
+            rebuild: |_, values| Box::new(Self { width: values[0] }),
+        })
     }
 
     fn binary(&self, _: &Builder) -> Option<[f32; 2]> {

@@ -129,6 +129,14 @@ pub(super) fn check_range(
                 None => return true,
             }
         }
+        Source::Literal(Literal::Stops(stops)) => {
+            let refused = (stops.stops.iter())
+                .find_map(|stop| Some((range::refusal(&port.range, stop.at, stop.at)?, stop.at)));
+            match refused {
+                Some((refusal, at)) => (refusal, format!("a stop of `{}` is at {at}", port.name)),
+                None => return true,
+            }
+        }
         Source::Literal(Literal::Integer(number)) => {
             match range::refusal(&port.range, *number as f32, *number as f32) {
                 Some(refusal) => (refusal, format!("`{}` is {number}", port.name)),

@@ -9,7 +9,7 @@ use crate::diagnostic::escape;
 use crate::document::{Document, InputEntry};
 use crate::{
     Diagnostic, FileReference, Graph, Images, Input, Literal, Node, NodeId, NodeSpec, Output,
-    OutputType, Parameter, ParameterId, PortType, SIGNATURE, Source, Type,
+    OutputType, Parameter, ParameterId, PortType, Source, Type,
 };
 
 /// What became of a node of a template.
@@ -396,9 +396,9 @@ fn node(
     }
     let ty = match spec.output {
         OutputType::Exactly(ty) => ty,
-        OutputType::Widest => common,
+        OutputType::Widest | OutputType::Whole => common,
+        OutputType::Named(port) => named(spec, &inputs, port),
         OutputType::Stops => stops,
-        OutputType::Signature => signature(spec, &inputs),
     };
     let pointer = template.node_pointer(index);
     let id = NodeId(position_u32(graph.nodes.len()));
@@ -411,19 +411,6 @@ fn node(
         inputs,
     });
     Some((id, ty))
-}
-
-/// The type that the input `signature` names.
-///
-/// # Panics
-/// If the input is no choice of types: a bug of the spec.
-fn signature(spec: &NodeSpec, inputs: &[Input]) -> Type {
-    let chosen = spec.input(SIGNATURE).map(|index| &inputs[index].source);
-    let ty = match chosen {
-        Some(Source::Literal(Literal::Text(name))) => Type::by_name(name),
-        _ => None,
-    };
-    ty.unwrap_or_else(|| panic!("{} has no signature: {chosen:?}", spec.name))
 }
 
 fn written(value: &Value, port: PortType, ty: Type) -> Result<Literal, literal::Mistake> {
@@ -480,4 +467,14 @@ fn common_type(
         }
     }
     Some(common)
+}
+
+/// The type that a choice names.
+fn named(spec: &NodeSpec, inputs: &[Input], port: &str) -> Type {
+    let chosen = spec.input(port).map(|index| &inputs[index].source);
+    match chosen {
+        Some(Source::Literal(Literal::Text(name))) => Type::by_name(name),
+        _ => None,
+    }
+    .unwrap_or_else(|| panic!("`{port}` of {} names types", spec.name))
 }

@@ -3,25 +3,19 @@
 //! D = Σ_j ∫_j (T(x) − E[T] − α(x − m))² over the Gaussian: each piece contributes a non-negative
 //! part, so nothing cancels (RULES, transfers: √D within 3e-5 in f32).
 
-use super::super::{Gaussian, Normal};
-use super::{Piecewise, segment::probability};
+use super::super::{Gaussian, Normal, curve::TEN};
+use super::{
+    Piecewise,
+    segment::{Bump, probability},
+};
 use crate::ir::{Builder, Value};
 
-/// Nodes and weights of Gauss–Legendre on [0, 1], degree 5 and 11.
+/// Nodes and weights of Gauss–Legendre on [0, 1], degree 5.
 const THREE: [(f32, f32); 3] = [
     (0.112_701_665, 0.277_777_78),
     (0.5, 0.444_444_44),
     (0.887_298_35, 0.277_777_78),
 ];
-const SIX: [(f32, f32); 6] = [
-    (0.033_765_24, 0.085_662_25),
-    (0.169_395_31, 0.180_380_79),
-    (0.380_690_41, 0.233_956_97),
-    (0.619_309_6, 0.233_956_97),
-    (0.830_604_7, 0.180_380_79),
-    (0.966_234_74, 0.085_662_25),
-];
-
 impl Piecewise {
     pub(super) fn distortion(
         &self,
@@ -100,6 +94,22 @@ impl Piecewise {
     }
 }
 
+/// A residual e + f z.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct Residual {
+    /// e.
+    pub(in super::super) constant: Value,
+    /// f.
+    pub(in super::super) slope: Value,
+}
+
+impl Residual {
+    /// ∫ (e + f z)² φ between two edges, at least 0.
+    pub(in super::super) fn between(self, b: &mut Builder, from: &Normal, to: &Normal) -> Value {
+        inner(b, from, to, self.constant, self.slope, None)
+    }
+}
+
 /// ∫ (e + f z)² φ over a piece with truncated moments p, M₁, M₂: p[(e + fμ)² + f² ν].
 fn closed(b: &mut Builder, p: Value, first: Value, second: Value, e: Value, f: Value) -> Value {
     let least = b.f32(1e-20);
@@ -118,25 +128,26 @@ fn closed(b: &mut Builder, p: Value, first: Value, second: Value, e: Value, f: V
     b.mul(p, total)
 }
 
-/// A bump on a piece: its height, and τ = at + gain · z. Standard scores of knots are limited, so τ
-/// does not follow from them.
-struct Bump {
-    height: Value,
+/// A bump on a piece, and τ = at + gain · z. Standard scores of knots are limited, so τ does not
+/// follow from them.
+struct Placed {
+    bump: Bump,
     at: Value,
     gain: Value,
 }
 
 impl Piecewise {
     /// The bump between knot `piece` and the next one, if there is one.
-    fn bump_on(&self, b: &mut Builder, piece: usize, x: &Gaussian) -> Option<Bump> {
-        let height = self.smooth.get(piece).copied().filter(|&h| !b.is_zero(h))?;
+    fn bump_on(&self, b: &mut Builder, piece: usize, x: &Gaussian) -> Option<Placed> {
+        let bump = self.bumps.get(piece).filter(|bump| !bump.is_flat(b))?;
+        let bump = *bump;
         let (from, to) = (self.knots[piece].at, self.knots[piece + 1].at);
         let width = b.sub(to, from);
         let least = b.f32(1e-6);
         let width = b.max(width, least);
         let distance = b.sub(x.mean, from);
-        Some(Bump {
-            height,
+        Some(Placed {
+            bump,
             at: b.div(distance, width),
             gain: b.div(x.sd, width),
         })
@@ -150,10 +161,10 @@ fn inner(
     to: &Normal,
     e: Value,
     f: Value,
-    bump: Option<Bump>,
+    bump: Option<Placed>,
 ) -> Value {
     let (a, end) = (b.neg(from.z), b.neg(to.z));
-    let Some(Bump { height, at, gain }) = bump else {
+    let Some(Placed { bump, at, gain }) = bump else {
         let p = probability(b, from, to);
         let first = b.sub(from.density, to.density);
         let (left, right) = (b.mul(a, from.density), b.mul(end, to.density));
@@ -171,16 +182,11 @@ fn inner(
     };
     // The density beyond ±4.5 adds nothing.
     let (low, high) = (b.clamp(a, -4.5, 4.5), b.clamp(end, -4.5, 4.5));
-    let one = b.f32(1.0);
-    nodes(b, low, high, &SIX, |b, z, _| {
+    nodes(b, low, high, &TEN, |b, z, _| {
         let t = b.mul(gain, z);
         let t = b.add(at, t);
         let t = b.clamp(t, 0.0, 1.0);
-        let (back, twice) = (b.sub(one, t), b.add(t, t));
-        let product = b.mul(t, back);
-        let centre = b.sub(twice, one);
-        let bump = b.mul(product, centre);
-        let bump = b.mul(bump, height);
+        let bump = bump.at(b, t);
         let line = b.mul(f, z);
         let line = b.add(e, line);
         b.add(line, bump)

@@ -81,10 +81,17 @@ impl Writer<'_, '_> {
                 self.push("    if !");
                 self.operand(condition, level::PRIMARY);
             }
-            Count::Times(count) => {
+            Count::Times(count) if self.function.constant(count).is_some() => {
                 self.push("    for (var i = 0u; i < ");
                 self.operand(count, level::SUM);
                 self.push("; i++)");
+            }
+            // A device that masks its lanes instead of branching runs the body of a loop that is
+            // left at its top once more, for nothing.
+            Count::Times(count) => {
+                self.push("    if 0u < ");
+                self.operand(count, level::SUM);
+                self.push(" { for (var i = 0u; ; )");
             }
         }
         self.push(" {\n        ");
@@ -109,7 +116,15 @@ impl Writer<'_, '_> {
             self.operand(capture, level::ARGUMENT);
         }
         self.close_call(*callee);
-        self.push(";\n    }\n");
+        self.push(";\n");
+        match turns {
+            Count::Times(count) if self.function.constant(count).is_none() => {
+                self.push("        i++;\n        if i >= ");
+                self.operand(count, level::SUM);
+                self.push(" { break; }\n    } }\n");
+            }
+            _ => self.push("    }\n"),
+        }
     }
 
     /// The text that defines `value`, in parentheses if its place binds tighter.

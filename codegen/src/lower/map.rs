@@ -1,0 +1,86 @@
+//! Functions of two signals by tables.
+
+use super::{Bundle, Compiler, Lower};
+use crate::cpu::{Evaluator, Input, Scratch};
+use crate::ir::{Builder, FunctionRef, Module, Value};
+use crate::moments::{Domain, Grid, Map, SIDE, Signal};
+use mipless_graph::Node;
+use std::sync::{Arc, LazyLock};
+
+/// Builds the components of a map from two numbers.
+type Build = dyn Fn(&mut Builder, &mut Module, [Value; 2]) -> Vec<Value> + Send + Sync;
+
+impl Lower<'_> {
+    /// A function of two signals, whatever their covariance: `build` gives its components, within
+    /// `ranges`, of two numbers; it must build the same function each time. The function is sampled
+    /// over `domain` when a table of its moments is first read.
+    ///
+    /// # Panics
+    /// If there are not one to four ranges.
+    pub fn map(
+        &mut self,
+        node: &Node,
+        [x, y]: [&Signal; 2],
+        domain: Domain,
+        ranges: &[[f32; 2]],
+        build: impl Fn(&mut Builder, &mut Module, [Value; 2]) -> Vec<Value> + Send + Sync + 'static,
+    ) -> Bundle {
+        let name = super::identifier(&node.name);
+        let map = self.compiler.mapped(self.module, &node.name, |module| {
+            let of = function(module, &name, &build);
+            let build = Box::new(build);
+            let grid: Grid = Arc::new(LazyLock::new(Box::new(move || {
+                let mut module = Module::default();
+                function(&mut module, "map", &*build);
+                sampled(&module, domain)
+            })));
+            Map::new(module, &name, of, domain, ranges.to_vec(), &grid)
+        });
+        self.algebra.map([x, y], &map)
+    }
+}
+
+impl Compiler<'_> {
+    /// The map of that key, made once.
+    pub(super) fn mapped(
+        &self,
+        module: &mut Module,
+        key: &str,
+        make: impl FnOnce(&mut Module) -> Map,
+    ) -> Map {
+        let known = self.maps.borrow().get(key).cloned();
+        known.unwrap_or_else(|| {
+            let map = make(module);
+            self.maps.borrow_mut().insert(key.to_owned(), map.clone());
+            map
+        })
+    }
+}
+
+fn function(module: &mut Module, name: &str, build: &Build) -> FunctionRef {
+    let mut b = Builder::new(format!("{name}_of"), "A function of two signals.");
+    let place = ["x", "y"].map(|name| b.param_f32(name));
+    let values = build(&mut b, module, place);
+    for (i, &value) in values.iter().enumerate() {
+        b.result(format!("value_{i}"), value);
+    }
+    b.finish(module)
+}
+
+/// The components of the module's entry, a function of two numbers, over a domain.
+pub(super) fn sampled(module: &Module, domain: Domain) -> Vec<Vec<f32>> {
+    let evaluator = Evaluator::<f64>::new(module);
+    let mut scratch = Scratch::new();
+    let mut components: Vec<Vec<f32>> = Vec::new();
+    let mut values: Vec<Vec<f64>> = Vec::new();
+    for row in 0..SIDE {
+        let [x, y] = domain.row(row);
+        let inputs = [Input::Floats(&x), Input::Floats(&y)];
+        evaluator.evaluate(&mut scratch, &inputs, SIDE, &mut values);
+        components.resize_with(values.len(), || Vec::with_capacity(SIDE * SIDE));
+        for (component, values) in components.iter_mut().zip(&values) {
+            component.extend(values.iter().map(|&v| v as f32));
+        }
+    }
+    components
+}

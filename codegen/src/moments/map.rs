@@ -1,0 +1,240 @@
+//! Functions of two signals by tables: an isotropic σ-pyramid over the plane, baked in f64.
+//!
+//! Level l holds E[T] under an isotropic Gaussian on a grid of at most σ_l/2, read linearly in
+//! position and in σ. A covariance Σ is read by five taps along its major axis: with s² =
+//! max(λ₂, λ₁/16), Σ ≈ s² I + (λ₁ − s²) v vᵀ, which blurs the minor axis too far and keeps the
+//! major variance (MATH §5; DESIGN §7). So any correlation of the two signals is filtered, where
+//! Grenier et al. 2022 tabulate axis-aligned ones alone.
+//!
+//! Slopes are stored as σ E[∂T] and what is left of the variance as its root; all components of a
+//! texel are packed into one number. Below the finest σ the function itself is the other end.
+
+mod bake;
+mod pack;
+mod read;
+
+use super::{Algebra, Signal};
+use crate::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
+use pack::Packing;
+use std::sync::{Arc, LazyLock};
+
+/// A function of two numbers, sampled over a domain; one vector a component, rows first.
+pub(crate) type Grid = Arc<LazyLock<Vec<Vec<f32>>, Box<dyn Fn() -> Vec<Vec<f32>> + Send + Sync>>>;
+
+/// Samples along each side of the domain: 2 a finest σ.
+pub(crate) const SIDE: usize = 1024;
+
+/// The finest σ, in domains. Below it the function itself is read.
+const FINEST: f64 = 1.0 / 512.0;
+/// σ of the level after it.
+const SECOND: f64 = 1.0 / 128.0;
+/// How many levels; the coarsest σ is one domain, over which a period is gone.
+const LEVELS: usize = 16;
+/// The most intervals of texels along a side.
+const MOST: usize = 256;
+
+/// σ of a level, in domains.
+fn sigma(level: usize) -> f64 {
+    match level {
+        0 => FINEST,
+        _ => SECOND * ((level - 1) as f64 / 2.0).exp2(),
+    }
+}
+
+/// How many intervals of texels a level has along a side: σ/2 each, at least two of them.
+fn intervals(level: usize) -> usize {
+    ((2.0 / sigma(level)).ceil() as usize).clamp(2, MOST)
+}
+
+/// The places that a map is defined on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// The smallest and the largest first and second number. Beyond them the map is constant, or
+    /// repeats.
+    pub bounds: [[f32; 2]; 2],
+    /// Whether it repeats.
+    pub periodic: bool,
+}
+
+impl Domain {
+    fn widths(&self) -> [f32; 2] {
+        self.bounds.map(|[low, high]| high - low)
+    }
+
+    /// Where row `row` of the samples is: first numbers, then the second numbers.
+    pub(crate) fn row(&self, row: usize) -> [Vec<f32>; 2] {
+        let at = |axis: usize, i: usize| {
+            let [low, high] = self.bounds[axis].map(f64::from);
+            (low + (high - low) * (i as f64 + 0.5) / SIDE as f64) as f32
+        };
+        [
+            (0..SIDE).map(|i| at(0, i)).collect(),
+            vec![at(1, row); SIDE],
+        ]
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moment {
+    Mean,
+    SlopeX,
+    SlopeY,
+    Distortion,
+}
+
+const MOMENTS: [(Moment, &str); 4] = [
+    (Moment::Mean, "mean"),
+    (Moment::SlopeX, "slope_x"),
+    (Moment::SlopeY, "slope_y"),
+    (Moment::Distortion, "distortion"),
+];
+
+/// A function of two numbers with moments that are baked when their tables are first read; tables
+/// that nothing reads are pruned with the module.
+#[derive(Clone, Debug)]
+pub(crate) struct Map {
+    /// Gives the components of two numbers.
+    function: FunctionRef,
+    /// The function as the body of a fold of at most one turn: it is evaluated only where needed.
+    branch: FunctionRef,
+    domain: Domain,
+    /// The least and largest value of each component.
+    ranges: Vec<[f32; 2]>,
+    packing: Packing,
+    /// The table of counts and offsets of the levels.
+    levels: u32,
+    tables: [u32; 4],
+    /// The functions that read a moment's level at a place.
+    readers: [FunctionRef; 4],
+}
+
+impl Map {
+    /// `function` takes two numbers and gives up to four components within `ranges`; `grid` holds
+    /// it sampled over the domain.
+    pub(crate) fn new(
+        module: &mut Module,
+        name: &str,
+        function: FunctionRef,
+        domain: Domain,
+        ranges: Vec<[f32; 2]>,
+        grid: &Grid,
+    ) -> Self {
+        let packing = Packing::new(ranges.len());
+        let levels = module.table("map_levels", layout(&packing));
+        let total = packing.header() + (0..LEVELS).map(texels).sum::<usize>();
+        let tables = MOMENTS.map(|(moment, suffix)| {
+            let (baked, tried) = (Arc::clone(grid), Arc::clone(grid));
+            let periodic = domain.periodic;
+            let bake = move || bake::table(&baked, moment, periodic, &packing);
+            let error = move |table: &[f32]| bake::error(&tried, table, moment, periodic, &packing);
+            let numbers = Numbers::lazy(total, bake).with_error(error);
+            module.push_table(format!("{name}_{suffix}"), numbers)
+        });
+        let mut of = |i: usize| {
+            let (_, suffix) = MOMENTS[i];
+            read::bilinear(module, &format!("{name}_{suffix}_at"), tables[i], &packing)
+        };
+        let readers = [of(0), of(1), of(2), of(3)];
+        let branch = branch(module, name, &function);
+        Self {
+            function,
+            branch,
+            domain,
+            ranges,
+            packing,
+            levels,
+            tables,
+            readers,
+        }
+    }
+}
+
+/// The texels of a level.
+fn texels(level: usize) -> usize {
+    (intervals(level) + 1).pow(2)
+}
+
+/// For each level: its intervals along a side, and the index of its first number.
+fn layout(packing: &Packing) -> Vec<f32> {
+    let mut rows = Vec::new();
+    let mut first = packing.header();
+    for level in 0..LEVELS {
+        rows.extend([intervals(level) as f32, first as f32]);
+        first += texels(level);
+    }
+    rows
+}
+
+/// The function as the body of a fold of at most one turn.
+fn branch(module: &mut Module, name: &str, function: &FunctionRef) -> FunctionRef {
+    let mut b = Builder::new(
+        format!("{name}_point"),
+        "The state becomes the map's value at a point.",
+    );
+    b.param("index", Type::U32);
+    for i in 0..function.results.len() {
+        b.param_f32(format!("state_{i}"));
+    }
+    let (x, y) = (b.param_f32("x"), b.param_f32("y"));
+    for (i, &value) in b.call(function, &[x, y]).iter().enumerate() {
+        b.result(format!("state_{i}"), value);
+    }
+    b.finish(module)
+}
+
+impl Algebra {
+    /// T(X, Y), whatever the covariance of X and Y is: means E[T], coefficients E[∂T] of both, and
+    /// the rest of the variance into a fresh ε of each component.
+    pub(crate) fn map(&mut self, [x, y]: [&Signal; 2], map: &Map) -> Vec<Signal> {
+        let [x, y] = [x, y].map(|signal| map.phase(&mut self.b, signal));
+        let certain = x.is_certain(&self.b) && y.is_certain(&self.b);
+        if !self.mode.spreads() || certain {
+            let values = self.b.call(&map.function, &[x.mean, y.mean]);
+            return (values.iter().zip(&map.ranges))
+                .map(|(&value, &range)| Signal::certain(&mut self.b, value).with_range(range))
+                .collect();
+        }
+        self.bent = true;
+        let b = &mut self.b;
+        let (vx, vy) = (x.variance(b), y.variance(b));
+        let covariance = x.covariance(b, &y).total;
+        let moments = map.moments(b, [x.mean, y.mean], [vx, covariance, vy]);
+        (moments.into_iter().zip(&map.ranges))
+            .map(|(m, &range)| {
+                let b = &mut self.b;
+                let (of_x, of_y) = (x.scale(b, m.slopes[0]), y.scale(b, m.slopes[1]));
+                let mut out = of_x.add(b, &of_y);
+                out.mean = b.clamp(m.mean, range[0], range[1]);
+                out.cell = None;
+                out.range = range;
+                out.binary = None;
+                self.attach_fresh(&mut out, m.distortion);
+                out
+            })
+            .collect()
+    }
+}
+
+impl Map {
+    /// The signal with its mean as one number; of a position in a period of 1 the fraction alone,
+    /// which keeps its detail far from the origin.
+    fn phase(&self, b: &mut Builder, signal: &Signal) -> Signal {
+        if self.domain.periodic && self.domain.widths() == [1.0; 2] {
+            return Signal {
+                cell: None,
+                ..signal.clone()
+            };
+        }
+        signal.flat(b)
+    }
+}
+
+/// The moments of one component.
+struct Moments {
+    mean: Value,
+    slopes: [Value; 2],
+    distortion: Value,
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! Coordinates that are mirrored back and forth.
+
+use crate::componentwise::{product, transfer};
+use crate::pattern::triangle::Triangle;
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
+    Range, Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "mirror",
+    aliases: &["mirror_uv", "ping_pong", "mirror2d"],
+    category: Category::Coordinate,
+    summary: "Mirrors coordinates back and forth between 0 and 1.",
+    doc: Doc {
+        computes: "out = |x − 2⌊x/2 + ½⌋| with x = texcoord · uvtiling, for each coordinate along the \
+            chosen axes; the others are unchanged. From 0 to 1, back to 0 at 2, and so on.",
+        statistics: "A triangle wave of a Gaussian in closed form: its mean, slope and distortion from its \
+            kinks one by one up to σ = 0.2 periods, from damped harmonics beyond. Inside and along \
+            the folds exact in mean and variance; what reads the coordinates takes them for \
+            Gaussian, which at a fold they are not.",
+        accuracy: "The mean is within 1e-4 of the coordinate, its standard deviation within 0.01. Of a \
+            noise of standard deviation 1 and six cells a tile that is read there, the mean is \
+            within 0.001, 0.002 and 0.008 (RMS) at footprints of 0.02, 0.06 and 0.18 cells. Held by \
+            `nodes/src/pattern/tests.rs`.",
+        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
+            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1.",
+    },
+    inputs: &[
+        PortSpec::new(
+            "texcoord",
+            PortType::Exactly(Type::Vector2),
+            Default::Surface,
+            "The coordinates.",
+        )
+        .unit("uv"),
+        PortSpec::new(
+            "uvtiling",
+            PortType::Exactly(Type::Vector2),
+            Default::Vector2([1.0, 1.0]),
+            "How many unit squares a unit of texture space holds.",
+        )
+        .range(Range::soft(1.0, 16.0))
+        .unit("tiles per uv"),
+        PortSpec::new(
+            "axis",
+            PortType::Choice(&["u", "v", "both"]),
+            Default::Choice("both"),
+            "Which coordinates are mirrored.",
+        ),
+    ],
+    output: OutputType::Exactly(Type::Vector2),
+    class,
+    example: r##"{
+  "version": 1,
+  "name": "mirror_example",
+  "nodes": {
+    "mirror": { "type": "mirror", "inputs": { "uvtiling": [3, 2] } },
+    "grain": { "type": "noise2d", "inputs": { "texcoord": { "node": "mirror" }, "frequency": 5, "pivot": 0.5 } }
+  },
+  "outputs": { "out": { "node": "grain" } }
+}"##,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+/// A function of each coordinate.
+fn class(_: &dyn InputView) -> Behaviour {
+    Behaviour::Function
+}
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let (texcoord, tiling) = (
+        lower.bundle(node, "texcoord"),
+        lower.bundle(node, "uvtiling"),
+    );
+    let axis = lower.choice(node, "axis");
+    [("u", 0), ("v", 1)]
+        .map(|(name, i)| {
+            let tiled = product(lower, &texcoord[i], &tiling[i]);
+            if axis != "both" && axis != name {
+                return tiled;
+            }
+            let b = lower.b();
+            let half = b.f32(0.5);
+            let phase = tiled.scale(b, half);
+            transfer(lower, &phase, &Triangle)
+        })
+        .to_vec()
+}

@@ -1,0 +1,241 @@
+//! One octave of the filtered noise.
+
+use super::energy::Energy;
+use super::row::{Frame, Moment, moments, row};
+use super::{MOST_ROWS, Octave, Octaves, WIDTH};
+use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::moments::Mode;
+
+/// An octave that keeps less than the first share of its variance has faded to nothing, above the
+/// second it has not begun to.
+const FADE: [f32; 2] = [0.0007, 0.0025];
+
+/// The spread, in squared cells, up to which the three nearest rows or columns suffice, and from
+/// which on a fourth counts in full.
+const FOURTH: [f32; 2] = [0.0144, 0.04];
+
+/// Rows are summed up to this many times √T₂₂ from the position, and the second number more where
+/// nothing of the octave is lost.
+const REACH: [f32; 2] = [2.2, 0.8];
+
+/// How many derivatives of the noise a mode needs.
+pub(super) fn derivatives(mode: Mode) -> usize {
+    match mode {
+        Mode::Point | Mode::Naive | Mode::Ensemble => 0,
+        Mode::Local => 1,
+        Mode::Quad => 2,
+    }
+}
+
+/// 0 below `low`, 1 above `high`, linear between.
+fn ramp(b: &mut Builder, x: Value, [low, high]: [f32; 2]) -> Value {
+    let x = b.offset(x, -low);
+    let x = b.scale(x, 1.0 / (high - low));
+    b.clamp(x, 0.0, 1.0)
+}
+
+/// One octave of the filtered noise, the body of a fold.
+pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> FunctionRef {
+    let count = derivatives(mode);
+    let row = row(module, count, octaves.tiles());
+    let doc = "One more octave of the filtered noise.";
+    let mut builder = Builder::new("lattice_octave", doc);
+    let b = &mut builder;
+    b.param("index", Type::U32);
+    let names = &["mean", "dx", "dy", "dxx", "dxy", "dyy"][..(count + 1) * (count + 2) / 2];
+    let sums: Vec<Value> = names.iter().map(|name| b.param_f32(*name)).collect();
+    let rest = mode.spreads().then(|| b.param_f32("rest"));
+    let state = Octave::declare(b, octaves);
+    let covariance = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
+    let (trace, determinant) = (b.param_f32("trace"), b.param_f32("determinant"));
+    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+
+    // The footprint in cells of this octave. The rows are laid along its longer side.
+    let area = b.square(state.scale);
+    let widest = b.f32(1e6);
+    let area = b.min(area, widest);
+    let [s_xx, s_xy, s_yy] = covariance.map(|s| b.mul(s, area));
+    let trace = b.mul(trace, area);
+    let area2 = b.square(area);
+    let determinant = b.mul(determinant, area2);
+    let energy = Energy::new(b, trace, determinant);
+    let swapped = b.lt(s_yy, s_xx);
+    let (across, along) = (b.min(s_xx, s_yy), b.max(s_xx, s_yy));
+    let t_yy = b.offset(along, WIDTH * WIDTH);
+    let q = b.div(one, t_yy);
+    let shear = b.mul(s_xy, q);
+    let p = b.mul(t_yy, energy.inverse);
+    let p = b.scale(p, WIDTH.powi(-4));
+    let minus = b.neg(p);
+    let decay = b.exp(minus);
+
+    // How many rows. What is dropped for want of rows or columns is below 0.015 of the noise.
+    let lean = b.mul(shear, s_xy);
+    let across = b.sub(across, lean);
+    let outer = [ramp(b, across, FOURTH), ramp(b, along, FOURTH)];
+    let left = b.max(energy.left, zero);
+    let amplitude = b.sqrt(left);
+    let reach = b.scale(amplitude, 2.0 * REACH[1]);
+    let reach = b.offset(reach, 2.0 * REACH[0]);
+    let size = b.sqrt(t_yy);
+    let needed = b.mul(reach, size);
+    let (three, four) = (b.f32(3.0), b.f32(4.0));
+    let is_near = b.le(outer[1], zero);
+    let least = b.select(is_near, three, four);
+    let minus = b.neg(needed);
+    let floor = b.floor(minus);
+    let rows = b.neg(floor);
+    let rows = b.max(rows, least);
+    let most = b.f32(MOST_ROWS);
+    let rows = b.min(rows, most);
+
+    // The octave fades to nothing before it is dropped.
+    let by_energy = ramp(b, energy.left, FADE);
+    let by_reach = ramp(b, needed, [MOST_ROWS, MOST_ROWS * 0.8]);
+    let fade = b.mul(by_energy, by_reach);
+    let gone = b.le(fade, zero);
+    let (none, row_count) = (b.u32(0), b.trunc_i(rows));
+    let row_count = b.cast_u(row_count);
+    let row_count = b.select(gone, none, row_count);
+
+    // The position in the rows' frame.
+    let [x, y] = state.fractions;
+    let (x, y) = (b.select(swapped, y, x), b.select(swapped, x, y));
+    let half = b.scale(rows, -0.5);
+    let start = b.add(y, half);
+    let start = b.floor(start);
+    let start = b.offset(start, 1.0);
+    let address = state.address(b).swapped(b, swapped).from_row(b, start);
+    // Of four rows the one that is not among the nearest three.
+    let (first_row, last_row, no_row) = (b.u32(0), b.u32(3), b.u32(u32::MAX));
+    let floor = b.floor(y);
+    let fraction = b.sub(y, floor);
+    let rounded = b.offset(fraction, 0.5);
+    let right = b.le(one, rounded);
+    let outer_row = b.select(right, first_row, last_row);
+    let outer_row = b.select(is_near, no_row, outer_row);
+    let frame = Frame {
+        x,
+        y: b.sub(y, start),
+        address,
+        shear,
+        precisions: [p, q],
+        decay,
+        outer_row,
+        outer,
+    };
+    let kinds = moments(count);
+    let kernels = b.fold(&row, row_count, &vec![zero; kinds.len()], &frame.captures());
+    let swap = Swap { swapped, shear };
+    let parts = swap.derivatives(b, &kinds, &kernels, count);
+
+    // κ = a³/(√π √det T) = a/√(πD).
+    let kappa = b.scale(energy.root, WIDTH / std::f32::consts::PI.sqrt());
+    let faded = b.mul(kappa, fade);
+    let weight = b.mul(faded, state.amplitude);
+    let steep = b.mul(weight, state.scale);
+    let bent = b.mul(weight, area);
+    let weights = [weight, steep, steep, bent, bent, bent];
+    for (((name, sum), part), weight) in names.iter().zip(sums).zip(parts).zip(weights) {
+        let part = b.mul(weight, part);
+        let total = b.add(sum, part);
+        b.result(*name, total);
+    }
+    if let Some(rest) = rest {
+        let left = remainder(b, mode, &energy, fade);
+        let power = b.square(state.amplitude);
+        let part = b.mul(power, left);
+        let rest = b.add(rest, part);
+        b.result("rest", rest);
+    }
+    state.advance(b, octaves);
+    builder.finish(module)
+}
+
+/// How the rows' frame lies in the lattice.
+struct Swap {
+    swapped: Value,
+    shear: Value,
+}
+
+impl Swap {
+    /// The noise and its derivatives (xx, xy, yy last) in the lattice's frame: ∂ₓ is ∂ₓ′, and ∂ᵧ is
+    /// ∂ᵧ − t∂ₓ′. Exchanged axes turn the sign of cos θ.
+    fn derivatives(
+        &self,
+        b: &mut Builder,
+        kinds: &[Moment],
+        sums: &[Value],
+        count: usize,
+    ) -> Vec<Value> {
+        let find = |moment| {
+            let i = kinds.iter().position(|&kind| kind == moment);
+            sums[i.expect("the rows sum it")]
+        };
+        let (one, t) = (b.f32(1.0), self.shear);
+        let twice = b.add(t, t);
+        let square = b.square(t);
+        let rest = b.sub(one, square);
+        let minus = b.f32(-1.0);
+        let sign = b.select(self.swapped, minus, one);
+        // The derivative of orders i and j along x′ and y, up to the sign (−1)^{i+j}.
+        let of = |b: &mut Builder, i: usize, j: usize| {
+            let [xx, xy, yy] =
+                [(2, 0), (1, 1), (0, 2)].map(|(x, y)| find(Moment::Cosine(x + i, y + j)));
+            let cosine = b.dot(&[rest, twice], &[xx, xy]);
+            let cosine = b.sub(cosine, yy);
+            let [xx, xy] = [(2, 0), (1, 1)].map(|(x, y)| find(Moment::Sine(x + i, y + j)));
+            let lean = b.mul(t, xx);
+            let sine = b.sub(xy, lean);
+            let sine = b.add(sine, sine);
+            let cosine = b.mul(sign, cosine);
+            b.add(cosine, sine)
+        };
+        let mut parts = vec![of(b, 0, 0)];
+        if count > 0 {
+            let (x, y) = (of(b, 1, 0), of(b, 0, 1));
+            let lean = b.mul(t, x);
+            let y = b.sub(lean, y);
+            let x = b.neg(x);
+            parts.extend([b.select(self.swapped, y, x), b.select(self.swapped, x, y)]);
+        }
+        if count > 1 {
+            let [xx, xy, yy] = [(2, 0), (1, 1), (0, 2)].map(|(i, j)| of(b, i, j));
+            let lean = b.mul(t, xx);
+            let mixed = b.sub(xy, lean);
+            let cross = b.mul(twice, xy);
+            let steep = b.mul(square, xx);
+            let yy = b.sub(yy, cross);
+            let yy = b.add(yy, steep);
+            parts.extend([
+                b.select(self.swapped, yy, xx),
+                mixed,
+                b.select(self.swapped, xx, yy),
+            ]);
+        }
+        parts
+    }
+}
+
+/// What the filter removed, 1 − F, less what the mode carries of it, plus what fading drops: shares
+/// of the octave's variance. V − V₁ is at least V₂; below 6e-7 the difference is rounding.
+fn remainder(b: &mut Builder, mode: Mode, energy: &Energy, fade: Value) -> Value {
+    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let lost = b.sub(one, energy.left);
+    let square = b.square(fade);
+    let kept = b.sub(one, fade);
+    let dropped = b.square(kept);
+    let dropped = b.mul(dropped, energy.left);
+    let uncarried = b.sub(one, square);
+    let (carried, least) = match mode {
+        Mode::Local => (energy.first, b.max(energy.second, zero)),
+        Mode::Quad => (b.add(energy.first, energy.second), zero),
+        _ => (zero, zero),
+    };
+    let left = b.sub(lost, carried);
+    let left = b.offset(left, -6e-7);
+    let left = b.max(left, least);
+    let back = b.mul(uncarried, carried);
+    let left = b.add(left, back);
+    b.add(left, dropped)
+}

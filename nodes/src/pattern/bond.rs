@@ -1,0 +1,111 @@
+//! Where the bricks of a bond lie in its unit cell.
+
+use mipless_codegen::ir::{Builder, Value};
+
+/// How bricks are laid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bond {
+    /// Every other row is shifted.
+    Running,
+    /// Rows of stretchers and of headers.
+    English,
+    /// Stretchers and headers in each row.
+    Flemish,
+    /// Lying and standing bricks in a zigzag.
+    Herringbone,
+    /// Pairs of lying and of standing bricks.
+    Basket,
+}
+
+/// A brick: its centre and its size, in bricks along x and rows along y.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Brick {
+    /// The centre.
+    pub(crate) centre: [Value; 2],
+    /// Width and height.
+    pub(crate) size: [f32; 2],
+}
+
+impl Bond {
+    /// The bond of this name.
+    ///
+    /// # Panics
+    /// If there is none: names are checked by the document's reader.
+    pub(crate) fn named(name: &str) -> Self {
+        match name {
+            "running" => Self::Running,
+            "english" => Self::English,
+            "flemish" => Self::Flemish,
+            "herringbone" => Self::Herringbone,
+            "basket" => Self::Basket,
+            _ => panic!("{name} is a bond"),
+        }
+    }
+
+    /// The size of the unit cell, in bricks and rows.
+    pub(crate) const fn cell(self) -> [f32; 2] {
+        match self {
+            Self::Running | Self::English => [1.0, 2.0],
+            Self::Flemish => [1.5, 2.0],
+            Self::Herringbone | Self::Basket => [2.0, 4.0],
+        }
+    }
+
+    /// The bricks of a unit cell; those that leave it on one side enter it on the other. `offset`
+    /// shifts the odd rows of the running bond.
+    pub(crate) fn bricks(self, b: &mut Builder, offset: Value) -> Vec<Brick> {
+        let fixed: Vec<[f32; 4]> = match self {
+            Self::Running => {
+                // The shift moves the pattern along +x, so that the brick's start moves with it.
+                let middle = b.offset(offset, 0.5);
+                let first = [0.5, 0.5].map(|x| b.f32(x));
+                let second = [middle, b.f32(1.5)];
+                let size = [1.0, 1.0];
+                return [first, second]
+                    .map(|centre| Brick { centre, size })
+                    .to_vec();
+            }
+            // A header stands in the middle of every joint and of every stretcher.
+            Self::English => vec![
+                [0.5, 0.5, 1.0, 1.0],
+                [0.0, 1.5, 0.5, 1.0],
+                [0.5, 1.5, 0.5, 1.0],
+            ],
+            Self::Flemish => vec![
+                [0.5, 0.5, 1.0, 1.0],
+                [1.25, 0.5, 0.5, 1.0],
+                [1.25, 1.5, 1.0, 1.0],
+                [0.5, 1.5, 0.5, 1.0],
+            ],
+            // In half bricks: row i holds a lying brick from i to i + 2; the column i + 3 holds a
+            // standing one in the rows i and i + 1.
+            Self::Herringbone => (0..4)
+                .map(|i| i as f32)
+                .flat_map(|i| {
+                    [
+                        [0.5 * (i + 1.0), i + 0.5, 1.0, 1.0],
+                        [0.5 * (i + 3.5), i + 1.0, 0.5, 2.0],
+                    ]
+                })
+                .collect(),
+            Self::Basket => (0..2)
+                .map(|i| i as f32)
+                .flat_map(|i| {
+                    let other = 1.0 - i;
+                    [
+                        [i + 0.5, 2.0 * i + 0.5, 1.0, 1.0],
+                        [i + 0.5, 2.0 * i + 1.5, 1.0, 1.0],
+                        [other + 0.25, 2.0 * i + 1.0, 0.5, 2.0],
+                        [other + 0.75, 2.0 * i + 1.0, 0.5, 2.0],
+                    ]
+                })
+                .collect(),
+        };
+        (fixed.into_iter())
+            .map(|[x, y, width, height]| Brick {
+                centre: [x, y].map(|v| b.f32(v)),
+                size: [width, height],
+            })
+            .collect()
+    }
+}

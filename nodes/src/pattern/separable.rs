@@ -1,0 +1,416 @@
+//! Sums of products of pulses, one factor a coordinate, over a footprint that may be rotated.
+//!
+//! The two coordinates are Gaussians of covariance c. With ρ = |c|/(σ₁σ₂) they are
+//! m + w t + √(1 − ρ) (σ₁ε₁, ±σ₂ε₂), w = √ρ (σ₁, ±σ₂), with independent standard t, ε₁ and ε₂: given
+//! t, the mean of a product is the product of the means, in closed form. What is left is one
+//! integral over t of a function that is smooth at the scale √((1 − ρ)/ρ): the trapezoid rule at
+//! 1.5 of it, within ±3.6, is exact to 5e-4. An axis-aligned footprint needs one node.
+//!
+//! Correlations are limited to [`MOST_CORRELATED`]: 10:1 at 45 degrees. A longer footprint keeps its
+//! spread along both coordinates and is blurred across.
+
+use super::pulse::{Axis, Pulse};
+use crate::noise::field::{Field, Spread};
+use mipless_codegen::Lower;
+use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::moments::{Mode, Signal};
+use std::fmt::Write as _;
+
+/// The largest correlation of the coordinates that is followed.
+const MOST_CORRELATED: f32 = 0.981;
+
+/// Nodes are at most this far from each other, in standard deviations of t.
+const WIDEST_STEP: f32 = 1.5;
+
+/// … and in the scale at which the function of t is smooth.
+const SMOOTH_STEP: f32 = 1.5;
+
+/// Where the integral over t ends.
+const REACH: f32 = 3.6;
+
+/// A coefficient times at most one pulse a coordinate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term {
+    /// The coefficient.
+    pub(crate) coefficient: f32,
+    /// The factor of the first coordinate, else 1.
+    pub(crate) x: Option<Pulse>,
+    /// The factor of the second coordinate, else 1.
+    pub(crate) y: Option<Pulse>,
+}
+
+impl Term {
+    /// The product of two pulses.
+    pub(crate) fn product(x: Pulse, y: Pulse) -> Self {
+        Self {
+            coefficient: 1.0,
+            x: Some(x),
+            y: Some(y),
+        }
+    }
+
+    /// `by` times the same.
+    pub(crate) fn times(self, by: f32) -> Self {
+        Self {
+            coefficient: self.coefficient * by,
+            ..self
+        }
+    }
+}
+
+/// A pattern with values in [0, 1].
+pub(crate) struct Pattern<'a> {
+    /// Names what the terms depend on beyond the parameters.
+    pub(crate) key: String,
+    /// The numbers that shape the pulses.
+    pub(crate) parameters: Vec<Value>,
+    /// A constant and terms of the unit cell, from the parameters.
+    pub(crate) terms: &'a dyn Fn(&mut Builder, &[Value]) -> (f32, Vec<Term>),
+    /// The terms of the square of the pattern, where edges are ramps, and the width of the ramps in
+    /// units of each coordinate.
+    pub(crate) soft: Option<Soft<'a>>,
+}
+
+/// What a pattern with ramps says of itself.
+pub(crate) struct Soft<'a> {
+    /// A constant and terms whose sum has the mean of the pattern's square.
+    pub(crate) squares: &'a dyn Fn(&mut Builder, &[Value]) -> (f32, Vec<Term>),
+    /// The width of the ramps along each coordinate.
+    pub(crate) width: [Value; 2],
+}
+
+/// A coordinate modulo 1.
+pub(crate) fn phase(b: &mut Builder, coordinate: &Signal) -> Value {
+    match coordinate.cell {
+        Some(_) => coordinate.mean,
+        None => {
+            let whole = b.floor(coordinate.mean);
+            b.sub(coordinate.mean, whole)
+        }
+    }
+}
+
+/// The pattern at a position in unit cells, as a signal.
+pub(crate) fn filtered(
+    lower: &mut Lower<'_>,
+    position: &[Signal; 2],
+    pattern: &Pattern<'_>,
+) -> Signal {
+    let mode = lower.mode();
+    let b = lower.b();
+    let [x, y] = [0, 1].map(|i| phase(b, &position[i]));
+    let certain = position.iter().all(|axis| axis.is_certain(b));
+    let sharp = pattern.soft.is_none();
+    if mode == Mode::Point || certain {
+        let (constant, terms) = (pattern.terms)(b, &pattern.parameters);
+        let value = point(b, constant, &terms, [x, y]);
+        return finished(lower, value, sharp);
+    }
+    let spread = Spread::of(b, position);
+    let taps = Taps::of(b, spread.covariance);
+    let constants: Vec<Option<f32>> = (pattern.parameters.iter())
+        .map(|&v| b.as_constant(v))
+        .collect();
+    let mut key = format!("pattern {} {mode:?}", pattern.key);
+    for constant in &constants {
+        // Writing to a string cannot fail.
+        let _ = write!(key, " {constant:?}");
+    }
+    let orders = orders(mode) + usize::from(!sharp && mode.spreads());
+    let tap = lower.function(&key, |module| tap(module, mode, pattern, &constants));
+    let b = lower.b();
+    let zero = b.f32(0.0);
+    let mut captures = vec![x, y];
+    captures.extend(taps.captures());
+    captures.extend(
+        (pattern.parameters.iter().zip(&constants))
+            .filter(|(_, constant)| constant.is_none())
+            .map(|(&value, _)| value),
+    );
+    let sums = b.fold(&tap, taps.count, &vec![zero; orders + 1], &captures);
+    let one = b.f32(1.0);
+    let inverse = b.div(one, sums[0]);
+    let mut at = |i: usize| {
+        if i < orders {
+            b.mul(sums[i + 1], inverse)
+        } else {
+            zero
+        }
+    };
+    let derivatives = usize::from(matches!(mode, Mode::Local | Mode::Quad));
+    let curvatures = usize::from(mode == Mode::Quad);
+    let pick = |on: usize, i: usize| if on == 1 { i } else { usize::MAX };
+    let field = Field {
+        mean: at(0),
+        gradient: [1, 2].map(|i| at(pick(derivatives, i))),
+        hessian: [3, 4, 5].map(|i| at(pick(curvatures, i))),
+        rest: zero,
+    };
+    let square = (!sharp && mode.spreads()).then(|| at(orders - 1));
+    let b = lower.b();
+    let mean = b.clamp(field.mean, 0.0, 1.0);
+    let mut field = Field { mean, ..field };
+    if mode.spreads() {
+        let softness = (pattern.soft.as_ref()).map(|soft| soft.width);
+        field.rest = rest(b, &field, &spread, square.zip(softness));
+    }
+    let signal = field.at(lower, position);
+    finished_signal(lower, signal, sharp)
+}
+
+fn finished(lower: &mut Lower<'_>, value: Value, sharp: bool) -> Signal {
+    let signal = Signal::certain(lower.b(), value);
+    finished_signal(lower, signal, sharp)
+}
+
+/// A sharp pattern takes two values, and every pattern bends.
+fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool) -> Signal {
+    lower.algebra.bent = true;
+    let b = lower.b();
+    let binary = (sharp && !signal.is_certain(b)).then(|| [0.0, 1.0].map(|x| b.f32(x)));
+    Signal {
+        binary,
+        ..signal.with_range([0.0, 1.0])
+    }
+}
+
+/// Var − |g|² − ½‖H‖². A sharp pattern is 0 or 1: its variance is P(1 − P). One with ramps has
+/// E[P²] − P², and no more than the ramps' linear response while the footprint lies within them.
+pub(crate) fn rest(
+    b: &mut Builder,
+    field: &Field,
+    spread: &Spread,
+    soft: Option<(Value, [Value; 2])>,
+) -> Value {
+    let [xx, xy, yy] = spread.covariance;
+    let one = b.f32(1.0);
+    let variance = match soft {
+        None => {
+            let other = b.sub(one, field.mean);
+            b.mul(field.mean, other)
+        }
+        Some((square, _)) => {
+            let squared = b.square(field.mean);
+            b.sub(square, squared)
+        }
+    };
+    let [dx, dy] = field.gradient;
+    let (px, py) = (b.dot(&[xx, xy], &[dx, dy]), b.dot(&[xy, yy], &[dx, dy]));
+    let linear = b.dot(&[dx, dy], &[px, py]);
+    let mut rest = b.sub(variance, linear);
+    let [h11, h12, h22] = field.hessian;
+    if !(b.is_zero(h11) && b.is_zero(h12) && b.is_zero(h22)) {
+        // ½ tr (HΣ)².
+        let (a, d) = (b.dot(&[h11, h12], &[xx, xy]), b.dot(&[h12, h22], &[xy, yy]));
+        let (p, q) = (b.dot(&[h11, h12], &[xy, yy]), b.dot(&[h12, h22], &[xx, xy]));
+        let (a, d, pq) = (b.square(a), b.square(d), b.mul(p, q));
+        let trace = b.add(a, d);
+        let trace = b.scale(trace, 0.5);
+        let trace = b.add(trace, pq);
+        rest = b.sub(rest, trace);
+    }
+    let zero = b.f32(0.0);
+    rest = b.max(rest, zero);
+    if let Some((_, [wide, high])) = soft {
+        // The response of a ramp is linear where the footprint lies within it.
+        let share = |b: &mut Builder, variance: Value, width: Value| {
+            let square = b.square(width);
+            let square = b.scale(square, 0.16);
+            let sum = b.add(variance, square);
+            let sum = b.offset(sum, 1e-12);
+            b.div(square, sum)
+        };
+        let (left, right) = (share(b, xx, wide), share(b, yy, high));
+        let within = b.mul(left, right);
+        let beyond = b.sub(one, within);
+        rest = b.mul(rest, beyond);
+    }
+    rest
+}
+
+fn orders(mode: Mode) -> usize {
+    match mode {
+        Mode::Point | Mode::Naive | Mode::Ensemble => 1,
+        Mode::Local => 3,
+        Mode::Quad => 6,
+    }
+}
+
+fn point(b: &mut Builder, constant: f32, terms: &[Term], at: [Value; 2]) -> Value {
+    let mut sum = b.f32(constant);
+    for term in terms {
+        let mut product = b.f32(term.coefficient);
+        for (pulse, x) in [term.x, term.y].into_iter().zip(at) {
+            if let Some(pulse) = pulse {
+                let value = pulse.value(b, x);
+                product = b.mul(product, value);
+            }
+        }
+        sum = b.add(sum, product);
+    }
+    sum
+}
+
+/// The nodes of the integral over t.
+pub(crate) struct Taps {
+    /// w.
+    pub(crate) along: [Value; 2],
+    /// The standard deviations that are left, at least 1e-6.
+    pub(crate) sd: [Value; 2],
+    /// The first node.
+    pub(crate) start: Value,
+    /// From a node to the next.
+    pub(crate) step: Value,
+    /// How many, as u32.
+    pub(crate) count: Value,
+}
+
+impl Taps {
+    /// The nodes for this covariance.
+    pub(crate) fn of(b: &mut Builder, [xx, xy, yy]: [Value; 3]) -> Self {
+        let (one, zero) = (b.f32(1.0), b.f32(0.0));
+        let [sx, sy] = [xx, yy].map(|v| {
+            let v = b.offset(v, 1e-12);
+            b.sqrt(v)
+        });
+        let both = b.mul(sx, sy);
+        let magnitude = b.abs(xy);
+        let rho = b.div(magnitude, both);
+        let most = b.f32(MOST_CORRELATED);
+        let rho = b.min(rho, most);
+        let left = b.sub(one, rho);
+        let (root, root_left) = (b.sqrt(rho), b.sqrt(left));
+        let wx = b.mul(root, sx);
+        let wy = b.mul(root, sy);
+        let negative = b.lt(xy, zero);
+        let back = b.neg(wy);
+        let wy = b.select(negative, back, wy);
+        let sd = [sx, sy].map(|s| b.mul(s, root_left));
+        // 1/step² = 1/1.5² + ρ/(1.5² (1 − ρ)).
+        let ratio = b.div(rho, left);
+        let ratio = b.scale(ratio, 1.0 / (SMOOTH_STEP * SMOOTH_STEP));
+        let inverse = b.offset(ratio, 1.0 / (WIDEST_STEP * WIDEST_STEP));
+        let inverse = b.sqrt(inverse);
+        let intervals = b.scale(inverse, 2.0 * REACH);
+        let intervals = b.floor(intervals);
+        // Without a correlation there is nothing to integrate.
+        let least = b.f32(1e-3);
+        let alone = b.lt(rho, least);
+        let intervals = b.select(alone, zero, intervals);
+        let step = b.div(one, inverse);
+        let half = b.scale(intervals, -0.5);
+        let start = b.mul(half, step);
+        let count = b.offset(intervals, 1.0);
+        let count = b.trunc_i(count);
+        let count = b.cast_u(count);
+        Self {
+            along: [wx, wy],
+            sd,
+            start,
+            step,
+            count,
+        }
+    }
+
+    /// The numbers that the body of the fold takes: w, σ, the first node and the step.
+    pub(crate) fn captures(&self) -> [Value; 6] {
+        let ([wx, wy], [sx, sy]) = (self.along, self.sd);
+        [wx, wy, sx, sy, self.start, self.step]
+    }
+
+    /// Inside the body: the two coordinates at this node, and the node's weight.
+    pub(crate) fn node(
+        b: &mut Builder,
+        index: Value,
+        [x, y]: [Value; 2],
+        captures: [Value; 6],
+    ) -> ([Axis; 2], Value) {
+        let [wx, wy, sx, sy, start, step] = captures;
+        let number = b.float_u(index);
+        let t = b.mul(number, step);
+        let t = b.add(start, t);
+        let square = b.square(t);
+        let exponent = b.scale(square, -0.5);
+        let weight = b.exp(exponent);
+        let axes = [(x, wx, sx), (y, wy, sy)].map(|(mean, along, sd)| {
+            let shift = b.mul(along, t);
+            let mean = b.add(mean, shift);
+            Axis { mean, sd }
+        });
+        (axes, weight)
+    }
+}
+
+/// One node of the integral, the body of a fold: weights, then the weighted mean and derivatives,
+/// then the mean of the square.
+fn tap(
+    module: &mut Module,
+    mode: Mode,
+    pattern: &Pattern<'_>,
+    constants: &[Option<f32>],
+) -> FunctionRef {
+    let soft = pattern.soft.as_ref().filter(|_| mode.spreads());
+    let orders = orders(mode);
+    let doc = "A pattern at one place of the footprint, averaged over what is left of it.";
+    let name: String = (pattern.key.chars())
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+        .collect();
+    let mut b = Builder::new(format!("{name}_tap"), doc);
+    let index = b.param("index", Type::U32);
+    let total = b.param_f32("weights");
+    let sums: Vec<Value> = (0..orders + usize::from(soft.is_some()))
+        .map(|i| b.param_f32(format!("sum_{i}")))
+        .collect();
+    let place = [b.param_f32("x"), b.param_f32("y")];
+    let captures =
+        ["along_x", "along_y", "sd_x", "sd_y", "start", "step"].map(|name| b.param_f32(name));
+    let mut parameters = Vec::new();
+    for (i, constant) in constants.iter().enumerate() {
+        parameters.push(match constant {
+            Some(x) => b.f32(*x),
+            None => b.param_f32(format!("parameter_{i}")),
+        });
+    }
+    let (axes, weight) = Taps::node(&mut b, index, place, captures);
+    let (constant, terms) = (pattern.terms)(&mut b, &parameters);
+    let mut parts = averaged(&mut b, constant, &terms, axes, orders);
+    if let Some(soft) = soft {
+        let (constant, terms) = (soft.squares)(&mut b, &parameters);
+        parts.extend(averaged(&mut b, constant, &terms, axes, 1));
+    }
+    let total = b.add(total, weight);
+    b.result("weights", total);
+    for (i, (&sum, part)) in sums.iter().zip(parts).enumerate() {
+        let part = b.mul(weight, part);
+        let sum = b.add(sum, part);
+        b.result(format!("sum_{i}"), sum);
+    }
+    b.finish(module)
+}
+
+/// The mean of the terms over independent coordinates, and as many derivatives as are asked for:
+/// ∂x, ∂y, ∂xx, ∂xy, ∂yy.
+fn averaged(
+    b: &mut Builder,
+    constant: f32,
+    terms: &[Term],
+    axes: [Axis; 2],
+    orders: usize,
+) -> Vec<Value> {
+    let zero = b.f32(0.0);
+    let mut out = vec![zero; orders];
+    out[0] = b.f32(constant);
+    for term in terms {
+        let [x, y] = [(term.x, axes[0]), (term.y, axes[1])].map(|(pulse, axis)| match pulse {
+            Some(pulse) => pulse.moments(b, axis),
+            None => [b.f32(1.0), zero, zero],
+        });
+        let x = x.map(|v| b.scale(v, term.coefficient));
+        for (sum, [i, j]) in (out.iter_mut()).zip([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])
+        {
+            let part = b.mul(x[i], y[j]);
+            *sum = b.add(*sum, part);
+        }
+    }
+    out
+}

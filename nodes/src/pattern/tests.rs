@@ -1,0 +1,268 @@
+//! Filtered patterns against dense sums of the pattern itself.
+
+use crate::{catalogue, specs};
+use mipless_codegen::cpu::{Footprint, eval_program};
+use mipless_codegen::{Method, Options, PixelFilter, compile};
+use mipless_graph::{CheckOptions, check, load};
+use serde_json::{Value, json};
+
+/// Means, then variances, in f64.
+fn evaluated(text: &str, method: Method, footprints: &[Footprint]) -> Vec<Vec<f64>> {
+    let loaded = load(text, &specs());
+    let graph = loaded
+        .graph
+        .unwrap_or_else(|| panic!("{text}\n{:?}", loaded.diagnostics));
+    let options = CheckOptions {
+        allow_sampling: true,
+    };
+    let checked = check(graph, &options).unwrap_or_else(|mistakes| panic!("{mistakes:?}"));
+    let options = Options {
+        method,
+        moments: true,
+        filter: PixelFilter::Gaussian(1.0),
+        ..Options::default()
+    };
+    let program = compile(&checked, catalogue(), &options);
+    eval_program::<f64>(&program, footprints, &[])
+}
+
+/// A graph of one node.
+pub(super) fn graph(ty: &str, inputs: &Value) -> String {
+    json!({
+        "version": 1, "name": "law",
+        "nodes": { "x": { "type": ty, "inputs": inputs } },
+        "outputs": { "out": { "node": "x" } }
+    })
+    .to_string()
+}
+
+/// Footprints of this size: round ones, or turned ones of 8:1.
+fn footprints(size: f32, turned: bool, places: usize) -> Vec<Footprint> {
+    (0..places)
+        .map(|i| {
+            let uv = [0.754_877_67, 0.569_840_3].map(|step: f32| (0.013 + step * i as f32).fract());
+            let (du, dv) = if turned {
+                // The direction differs from place to place.
+                let (s, c) = (0.5 + 0.7 * i as f32).sin_cos();
+                let (long, short) = (size * 8f32.sqrt(), size / 8f32.sqrt());
+                ([long * c, long * s], [-short * s, short * c])
+            } else {
+                ([size, 0.0], [0.0, size])
+            };
+            Footprint {
+                cell: [i as i32 % 3 - 1, 0],
+                uv,
+                du,
+                dv,
+            }
+        })
+        .collect()
+}
+
+/// Φ⁻¹ of a number in (0, 1), from a table of Φ.
+fn quantile(table: &[f64], p: f64) -> f64 {
+    let after = table
+        .partition_point(|&mass| mass < p)
+        .clamp(1, table.len() - 1);
+    let (low, high) = (table[after - 1], table[after]);
+    (after as f64 - 1.0 + (p - low) / (high - low)) * STEP - 6.0
+}
+
+const STEP: f64 = 1e-3;
+
+/// Mean and variance of the point values over a footprint, by the R2 sequence (Roberts 2018) of
+/// normal numbers: an edge is met by the same share of the points in any direction.
+fn dense(text: &str, footprints: &[Footprint], points: usize) -> Vec<[f64; 2]> {
+    let mut mass = 0.0;
+    let table: Vec<f64> = (0..12_000)
+        .map(|i| {
+            let z = STEP * (f64::from(i) - 0.5) - 6.0;
+            mass += STEP * (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
+            mass
+        })
+        .collect();
+    let normal: Vec<[f64; 2]> = (0..points)
+        .map(|i| {
+            [0.754_877_666_246_693, 0.569_840_290_998_053]
+                .map(|step| quantile(&table, (0.5 + step * i as f64).fract()))
+        })
+        .collect();
+    let mut samples = Vec::with_capacity(points * footprints.len());
+    for footprint in footprints {
+        for [x, y] in &normal {
+            let uv = [0, 1].map(|k| {
+                let step = f64::from(footprint.du[k]) * x + f64::from(footprint.dv[k]) * y;
+                f64::from(footprint.uv[k]) + step
+            });
+            let whole = uv.map(f64::floor);
+            samples.push(Footprint {
+                cell: [0, 1].map(|k| footprint.cell[k] + whole[k] as i32),
+                uv: [0, 1].map(|k| (uv[k] - whole[k]) as f32),
+                ..Footprint::default()
+            });
+        }
+    }
+    let values = &evaluated(text, Method::Point, &samples)[0];
+    (values.chunks(points))
+        .map(|chunk| {
+            let mean = chunk.iter().sum::<f64>() / chunk.len() as f64;
+            let square = chunk.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+            [mean, square / chunk.len() as f64]
+        })
+        .collect()
+}
+
+/// The largest errors of mean and variance over the sizes, for round and turned footprints.
+fn errors<const N: usize>(text: &str, sizes: &[f32], methods: [Method; N]) -> [[[f64; 2]; 2]; N] {
+    let long = std::env::var_os("MIPLESS_LONG").is_some();
+    let (places, points) = if long { (12, 100_000) } else { (6, 20_000) };
+    let mut worst = [[[0.0f64; 2]; 2]; N];
+    for turned in [false, true] {
+        for &size in sizes {
+            let footprints = footprints(size, turned, places);
+            let truth = dense(text, &footprints, points);
+            for (worst, method) in worst.iter_mut().zip(methods) {
+                let filtered = evaluated(text, method, &footprints);
+                let variances = &filtered[filtered.len() / 2];
+                let worst = &mut worst[usize::from(turned)];
+                for (i, truth) in truth.iter().enumerate() {
+                    let found = [filtered[0][i], variances[i]];
+                    for k in 0..2 {
+                        worst[k] = worst[k].max((found[k] - truth[k]).abs());
+                    }
+                }
+            }
+        }
+    }
+    worst
+}
+
+/// Sizes in cells, from where an edge is a line to where nothing is left.
+const SIZES: [f32; 7] = [0.01, 0.04, 0.1, 0.2, 0.35, 0.7, 2.0];
+
+/// Holds the errors of mean and variance: round, then turned 8:1.
+fn held(ty: &str, inputs: &Value, cell: f32, bounds: [[f64; 2]; 2]) {
+    let sizes = SIZES.map(|size| size * cell);
+    let methods = [Method::Local, Method::Quad];
+    let found = errors(&graph(ty, inputs), &sizes, methods);
+    for (found, method) in found.iter().zip(methods) {
+        println!("{ty} {inputs} by {method}: {found:.5?}");
+        for (found, bound) in found.iter().flatten().zip(bounds.iter().flatten()) {
+            assert!(
+                found <= bound,
+                "{ty} {inputs} by {method}: {found} > {bound}"
+            );
+        }
+    }
+}
+
+/// What the dense sums themselves may be off by.
+const DENSE: f64 = 4e-3;
+
+#[test]
+fn separable_patterns_are_filtered_exactly() {
+    let bound = [[DENSE, DENSE]; 2];
+    held("checkerboard", &json!({ "uvtiling": [1, 1] }), 1.0, bound);
+    for staggered in [false, true] {
+        let inputs = json!({ "thickness": 0.2, "staggered": staggered });
+        held("grid", &inputs, 1.0, bound);
+    }
+}
+
+#[test]
+fn bricks_are_filtered_exactly() {
+    for bond in ["running", "english", "flemish", "herringbone", "basket"] {
+        let inputs = json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": 0.15 });
+        held("brick", &inputs, 0.7, [[DENSE, DENSE]; 2]);
+    }
+}
+
+#[test]
+fn bevelled_bricks_have_their_mean_and_nearly_their_variance() {
+    for bond in ["running", "herringbone"] {
+        let inputs = json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": 0.1, "bevel": 0.3 });
+        held("brick", &inputs, 0.7, [[DENSE, 0.05]; 2]);
+    }
+}
+
+#[test]
+fn every_place_belongs_to_one_brick() {
+    let places: Vec<Footprint> = (0..400)
+        .map(|i| Footprint {
+            uv: [0.754_877_67, 0.569_840_3].map(|step: f32| (0.5 + step * i as f32).fract()),
+            cell: [i % 5 - 2, i % 7 - 3],
+            ..Footprint::default()
+        })
+        .collect();
+    for bond in ["running", "english", "flemish", "herringbone", "basket"] {
+        let inputs =
+            json!({ "bond": bond, "columns": 1.3, "rows": 2.7, "mortar": 0, "row_offset": 0.3 });
+        let values = &evaluated(&graph("brick", &inputs), Method::Point, &places)[0];
+        assert!(values.iter().all(|&x| x == 1.0), "{bond}");
+    }
+}
+
+/// The RMS error of the mean of a noise of standard deviation 1 that is read at coordinates, over
+/// footprints of a size.
+fn read_error(coordinate: &Value, size: f32, turned: bool) -> f64 {
+    let graph = json!({
+        "version": 1, "name": "read",
+        "nodes": {
+            "place": coordinate,
+            "x": { "type": "noise2d", "inputs": { "texcoord": { "node": "place" }, "frequency": 6, "amplitude": 4 } }
+        },
+        "outputs": { "out": { "node": "x" } }
+    })
+    .to_string();
+    let places = 40;
+    let footprints = footprints(size, turned, places);
+    let truth = dense(&graph, &footprints, 2000);
+    let found = &evaluated(&graph, Method::Local, &footprints)[0];
+    let square = |(found, truth): (&f64, &[f64; 2])| (found - truth[0]).powi(2);
+    let sum: f64 = found.iter().zip(&truth).map(square).sum();
+    (sum / places as f64).sqrt()
+}
+
+#[test]
+fn ramps_and_splits_are_filtered_exactly() {
+    let exact = [[1e-3; 2]; 2];
+    for name in ["ramplr", "splitlr"] {
+        held(name, &json!({ "valuel": 0, "valuer": 1 }), 1.0, exact);
+    }
+    for name in ["ramptb", "splittb"] {
+        held(name, &json!({ "valuet": 0, "valueb": 1 }), 1.0, exact);
+    }
+    let corners = json!({ "valuetl": 0, "valuetr": 1, "valuebl": 0.5, "valuebr": 0 });
+    held("ramp4", &corners, 1.0, [[1e-3, 0.02], [0.08, 0.16]]);
+}
+
+#[test]
+fn coordinates_have_the_moments_that_their_pages_state() {
+    held("mirror", &json!({}), 1.0, [[2e-3, 5e-3]; 2]);
+    held("swirl", &json!({}), 0.025, [[0.02; 2], [0.07; 2]]);
+    held("polar", &json!({ "center": [-2, -3] }), 0.3, [[0.02; 2]; 2]);
+}
+
+#[test]
+fn what_reads_odd_coordinates_is_filtered_by_their_footprint() {
+    for (ty, bound) in [
+        ("mirror", 0.1),
+        ("kaleidoscope", 0.15),
+        ("swirl", 0.12),
+        ("repeat", 0.2),
+        ("polar", 0.2),
+    ] {
+        let coordinate = json!({ "type": ty });
+        for (size, turned) in [
+            (0.003, false),
+            (0.01, false),
+            (0.03, false),
+            (0.01, true),
+            (0.03, true),
+        ] {
+            let error = read_error(&coordinate, size, turned);
+            println!("{ty} {size} {turned}: {error:.4}");
+            assert!(error < bound, "{ty} {size} {turned}: {error:.4}");
+        }
+    }
+}

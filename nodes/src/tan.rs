@@ -1,0 +1,66 @@
+//! Tangent.
+
+use crate::componentwise::{composed, quotient, transfer, unary};
+use mipless_codegen::moments::Sine;
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
+    Range,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "tan",
+    aliases: &["tangent", "math_tangent"],
+    category: Category::Transfer,
+    summary: "The tangent of a signal in radians.",
+    doc: Doc {
+        computes: "out = sin(in) / cos(in), for each component; a cosine nearer to 0 than 1e-6 is moved \
+            to ±1e-6.",
+        statistics: "A varying input reaches the poles, where no moment exists: the class is unknown, and \
+            the signal is sampled. Where the check allows that, filtered methods give the \
+            quotient of the two filtered waves, which is only bounded.",
+        accuracy: "Exact at a point to 1e-5 away from the poles; filtered, not stated. Held by \
+            `nodes/src/tests.rs`, which compares every node with its point value as the footprint \
+            goes to 0.",
+        references: "Marsaglia 2006, *Ratios of Normal Variables*, §2 (no moments without truncation). \
+            MaterialX 1.39 specification, node `tan`.",
+    },
+    inputs: &[
+        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The angle.")
+            .range(Range::soft(-1.5, 1.5))
+            .unit("radians"),
+    ],
+    output: OutputType::Widest,
+    class,
+    example: r#"{
+  "version": 1,
+  "name": "tan_example",
+  "nodes": {
+    "tan": {"type": "tan", "inputs": {"in": 0.7}}
+  },
+  "outputs": { "out": { "node": "tan" } }
+}"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+/// Of a number, a number.
+fn class(inputs: &dyn InputView) -> Behaviour {
+    if inputs.varies("in") {
+        Behaviour::Unknown("the tangent of a random angle has no moments")
+    } else {
+        Behaviour::Function
+    }
+}
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    unary(lower, node, "in", |lower, x| {
+        composed(lower, |lower| {
+            let x = lower.algebra.expose(x);
+            let phase = std::f32::consts::FRAC_PI_2;
+            let [sine, cosine] = [0.0, phase].map(|phase| transfer(lower, &x, &Sine { phase }));
+            quotient(lower, &sine, &cosine)
+        })
+    })
+}
