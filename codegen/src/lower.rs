@@ -23,7 +23,9 @@ use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
 };
 use rustc_hash::FxHashMap;
+use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::sync::Arc;
 
 /// The components of a node's output.
 pub type Bundle = Vec<Signal>;
@@ -98,6 +100,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         literal,
         functions,
         tables: RefCell::default(),
+        made: RefCell::default(),
         tabulated: RefCell::default(),
         fused,
         maps: RefCell::default(),
@@ -172,6 +175,8 @@ struct Compiler<'a> {
     tables: RefCell<FxHashMap<String, u32>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
     fused: RefCell<FxHashMap<usize, Samples>>,
+    /// What nodes have made of pictures, by its keys.
+    made: RefCell<FxHashMap<String, Arc<dyn Any + Send + Sync>>>,
     /// The functions by tables that nodes share, by their keys.
     tabulated: RefCell<FxHashMap<String, Tabulated>>,
     /// The functions of two signals, by their keys.

@@ -105,7 +105,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
         return (0..channels).map(|_| Signal::constant(b, 0.0)).collect();
     };
     let (colors, key) = planes(lower, node, &picture, node.ty);
-    let example = Arc::new(Example::new(&colors));
+    let example = lower.once(&format!("example {key}"), || Example::new(&colors));
     let of_example = Arc::clone(&example);
     let gaussian = Arc::new(LazyLock::new(move || of_example.gaussian()));
     let fields = blended(lower, node, &example, &gaussian, &key);

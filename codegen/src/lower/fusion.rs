@@ -57,6 +57,7 @@ impl<'a> Compiler<'a> {
             literal: self.literal.clone(),
             functions: Default::default(),
             tables: Default::default(),
+            made: Default::default(),
             tabulated: Default::default(),
             fused: Default::default(),
             maps: Default::default(),

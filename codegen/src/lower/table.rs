@@ -4,6 +4,7 @@ use super::{Lower, PixelFilter, identifier};
 use crate::ir::{Builder, Numbers};
 use crate::moments::{Sampled, Samples, Tabulated, sample_points};
 use mipless_graph::{Node, Picture};
+use std::any::Any;
 use std::sync::{Arc, LazyLock};
 
 impl Lower<'_> {
@@ -16,6 +17,23 @@ impl Lower<'_> {
             "the check has found the picture {name}"
         );
         found
+    }
+
+    /// What is made once for each key, for all functions of the graph; the key names its type and
+    /// whatever it depends on.
+    ///
+    /// # Panics
+    /// If the key stands for something of another type.
+    pub fn once<T: Any + Send + Sync>(&self, key: &str, make: impl FnOnce() -> T) -> Arc<T> {
+        let known = self.compiler.made.borrow().get(key).cloned();
+        let made = known.unwrap_or_else(|| {
+            let made: Arc<dyn Any + Send + Sync> = Arc::new(make());
+            let shared = Arc::clone(&made);
+            self.compiler.made.borrow_mut().insert(key.to_owned(), made);
+            shared
+        });
+        made.downcast()
+            .unwrap_or_else(|_| panic!("{key} is of another type"))
     }
 
     /// The pixel filter, whose standard deviation positions already have.

@@ -1,5 +1,7 @@
 //! The ports that pictures share, and where they say that the picture is read.
 
+use std::sync::Arc;
+
 use super::planes::Planes;
 use super::pyramid::Address;
 use mipless_codegen::Lower;
@@ -60,7 +62,7 @@ pub(crate) fn planes(
     node: &Node,
     picture: &Picture,
     ty: Type,
-) -> (Planes, String) {
+) -> (Arc<Planes>, String) {
     let color = matches!(ty, Type::Color3 | Type::Color4);
     let linearise = match lower.choice(node, "colorspace") {
         "srgb_texture" => true,
@@ -68,10 +70,9 @@ pub(crate) fn planes(
         _ => picture.encoded() && color,
     };
     let file = lower.choice(node, "file");
-    (
-        Planes::of(picture, ty, linearise),
-        format!("{file:?} {ty} {linearise}"),
-    )
+    let key = format!("{file:?} {ty} {linearise}");
+    let make = || Planes::of(picture, ty, linearise);
+    (lower.once(&format!("planes {key}"), make), key)
 }
 
 /// texcoord · uvtiling − uvoffset, in pictures.
