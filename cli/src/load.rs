@@ -2,7 +2,7 @@
 
 use crate::mistake::{Mistake, Status};
 use crate::report::Report;
-use mipless::{Diagnostic, Method, Texture};
+use mipless::{Diagnostic, Folder, Method, Texture};
 use mipless_graph::CheckOptions;
 use std::fs::File;
 use std::io::{self, Read};
@@ -40,7 +40,10 @@ pub(crate) fn warn(path: &Path, texture: &Texture, report: &mut Report) {
 
 /// Checks the text of a graph.
 pub(crate) fn parse(path: &Path, text: &str, options: &CheckOptions) -> Result<Texture, Mistake> {
-    Texture::with_options(text, options).map_err(|diagnostics| Mistake::graph(path, diagnostics))
+    // What is read from standard input names files relative to the current folder.
+    let folder = Folder(path.parent().unwrap_or(Path::new("")).to_path_buf());
+    Texture::with_files(text, options, &folder)
+        .map_err(|diagnostics| Mistake::graph(path, diagnostics))
 }
 
 /// Reads a text; `-` is standard input.

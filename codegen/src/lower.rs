@@ -6,11 +6,13 @@
 
 mod entry;
 mod fusion;
+mod input;
 mod map;
 mod method;
 mod pair;
 mod sampling;
 mod symbols;
+mod table;
 
 pub use method::{Method, ParseMethodError, PixelFilter};
 
@@ -18,12 +20,12 @@ use crate::ir::{
     Builder, FOOTPRINT, FunctionRef, Interface, Library, Module, POSITION, Port, Program,
     Type as Scalar, Value,
 };
-use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol};
-use mipless_graph::{
-    Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
-};
+use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
+use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Source, Type};
 use rustc_hash::FxHashMap;
+use std::any::Any;
 use std::cell::{Cell, RefCell};
+use std::sync::Arc;
 
 /// The components of a node's output.
 pub type Bundle = Vec<Signal>;
@@ -98,6 +100,9 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         crossed,
         literal,
         functions,
+        tables: RefCell::default(),
+        made: RefCell::default(),
+        tabulated: RefCell::default(),
         fused,
         maps: RefCell::default(),
         gains: RefCell::default(),
@@ -168,8 +173,14 @@ struct Compiler<'a> {
     literal: Vec<bool>,
     /// The functions that nodes share, by their keys.
     functions: RefCell<FxHashMap<String, FunctionRef>>,
+    /// The tables that nodes share, by their keys.
+    tables: RefCell<FxHashMap<String, u32>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
     fused: RefCell<FxHashMap<usize, Samples>>,
+    /// What nodes have made of pictures, by its keys.
+    made: RefCell<FxHashMap<String, Arc<dyn Any + Send + Sync>>>,
+    /// The functions by tables that nodes share, by their keys.
+    tabulated: RefCell<FxHashMap<String, Tabulated>>,
     /// The functions of two signals, by their keys.
     maps: RefCell<FxHashMap<String, Map>>,
     /// Whether regions of two signals are worth a map, by the node that they end in.
@@ -227,29 +238,6 @@ impl Arguments {
             .copied()
             .collect()
     }
-}
-
-/// A coordinate of the surface: its mean carried as a cell and a fraction in [0, 1), and its
-/// changes from pixel to pixel times the standard deviation of the filter, if it spreads.
-fn place(
-    b: &mut Builder,
-    cell: Value,
-    fraction: Value,
-    spread: Option<([Value; 2], f32)>,
-) -> Signal {
-    let zero = b.f32(0.0);
-    let start = Signal {
-        cell: Some(cell),
-        ..Signal::certain(b, zero)
-    };
-    let mut signal = start.offset(b, fraction);
-    if signal.cell.is_none() || b.is_zero(fraction) {
-        signal.cell = Some(cell);
-    }
-    if let Some((change, sd)) = spread {
-        signal.g = change.map(|x| b.scale(x, sd));
-    }
-    signal
 }
 
 /// The state of the lowering of one function of the graph; what nodes build through.
@@ -434,189 +422,5 @@ impl<'a> Lower<'a> {
         }
         means.extend(variances);
         means
-    }
-
-    // What nodes ask.
-
-    /// The builder of the function.
-    pub fn b(&mut self) -> &mut Builder {
-        &mut self.algebra.b
-    }
-
-    /// Which moments are carried.
-    pub fn mode(&self) -> Mode {
-        self.algebra.mode
-    }
-
-    /// A function of the module, built once for each key; the key names whatever it depends on.
-    pub fn function(
-        &mut self,
-        key: &str,
-        build: impl FnOnce(&mut Module) -> FunctionRef,
-    ) -> FunctionRef {
-        if let Some(function) = self.compiler.functions.borrow().get(key) {
-            return function.clone();
-        }
-        let function = build(self.module);
-        self.compiler
-            .functions
-            .borrow_mut()
-            .insert(key.to_owned(), function.clone());
-        function
-    }
-
-    /// The surface's position: cell and fraction, g = A.
-    pub fn surface(&mut self) -> Bundle {
-        let [cell_x, cell_y, u, v, du_dx, dv_dx, du_dy, dv_dy] = self.arguments.footprint;
-        let s = self.filter_sd;
-        let spreads = self.algebra.mode.filters();
-        let b = &mut self.algebra.b;
-        [(cell_x, u, [du_dx, du_dy]), (cell_y, v, [dv_dx, dv_dy])]
-            .map(|(cell, fraction, change)| {
-                place(b, cell, fraction, spreads.then_some((change, s)))
-            })
-            .to_vec()
-    }
-
-    /// The surface's position in space: cells and fractions, g = A.
-    ///
-    /// # Panics
-    /// If no class rule of the graph says that a vector of three components is a position.
-    pub fn space(&mut self) -> Bundle {
-        let all = self
-            .arguments
-            .position
-            .expect("the graph reads the position");
-        let s = self.filter_sd;
-        let spreads = self.algebra.mode.filters();
-        let b = &mut self.algebra.b;
-        (0..3)
-            .map(|axis| {
-                let change = [all[6 + axis], all[9 + axis]];
-                place(b, all[axis], all[3 + axis], spreads.then_some((change, s)))
-            })
-            .collect()
-    }
-
-    /// The signals of an input, of the type that the node sees.
-    ///
-    /// # Panics
-    /// If the node has no such input.
-    pub fn bundle(&mut self, node: &Node, port: &str) -> Bundle {
-        let input = node.input(port);
-        let bundle = match &input.source {
-            Source::Literal(literal) => {
-                let b = &mut self.algebra.b;
-                literal
-                    .numbers()
-                    .into_iter()
-                    .map(|x| Signal::constant(b, x))
-                    .collect()
-            }
-            Source::Node(id) => self.output(*id),
-            Source::Surface if input.ty == Type::Vector3 => self.space(),
-            Source::Surface => self.surface(),
-            Source::Parameter(id) => {
-                let parameter = &self.compiler.graph.parameters[id.index()];
-                let first = self.parameter_scalars[id.index()];
-                let range = match (parameter.min, parameter.max) {
-                    (Some(low), Some(high)) => [low, high],
-                    _ => [f32::NEG_INFINITY, f32::INFINITY],
-                };
-                (0..parameter.ty.components())
-                    .map(|i| {
-                        let value = self.arguments.parameters[first + i];
-                        let b = &mut self.algebra.b;
-                        let value = match b.ty(value) {
-                            Scalar::I32 => b.float_i(value),
-                            Scalar::Bool => {
-                                let (one, zero) = (b.f32(1.0), b.f32(0.0));
-                                b.select(value, one, zero)
-                            }
-                            _ => value,
-                        };
-                        Signal::certain(b, value).with_range(range)
-                    })
-                    .collect()
-            }
-        };
-        self.promote(bundle, input.ty)
-    }
-
-    fn output(&self, id: NodeId) -> Bundle {
-        self.bundles[id.index()]
-            .clone()
-            .expect("an input is lowered before its user")
-    }
-
-    /// Floats broadcast; a colour gains an alpha of 1.
-    fn promote(&mut self, mut bundle: Bundle, to: Type) -> Bundle {
-        let components = to.components();
-        if bundle.len() == 1 && components > 1 {
-            // A float as a colour with alpha is opaque.
-            let opaque = to == Type::Color4;
-            bundle = vec![bundle[0].clone(); components];
-            if opaque {
-                bundle[3] = Signal::constant(&mut self.algebra.b, 1.0);
-            }
-        }
-        while bundle.len() < components {
-            bundle.push(Signal::constant(&mut self.algebra.b, 1.0));
-        }
-        bundle
-    }
-
-    /// The one signal of a float input.
-    pub fn signal(&mut self, node: &Node, port: &str) -> Signal {
-        let mut bundle = self.bundle(node, port);
-        assert_eq!(bundle.len(), 1, "{port} of {} is a float", node.spec.name);
-        bundle.remove(0)
-    }
-
-    /// The mean of a float input that is a number to this node, such as an amplitude; where it
-    /// varies over the surface its own spread is ignored.
-    pub fn number(&mut self, node: &Node, port: &str) -> Value {
-        let signal = self.signal(node, port);
-        signal.flat_mean(&mut self.algebra.b)
-    }
-
-    /// A uniform integer.
-    pub fn integer(&self, node: &Node, port: &str) -> i32 {
-        match node.literal(port) {
-            Literal::Integer(i) => *i,
-            other => other.numbers()[0] as i32,
-        }
-    }
-
-    /// A uniform number.
-    pub fn float(&self, node: &Node, port: &str) -> f32 {
-        node.literal(port).numbers()[0]
-    }
-
-    /// A uniform truth value.
-    pub fn flag(&self, node: &Node, port: &str) -> bool {
-        matches!(node.literal(port), Literal::Boolean(true))
-    }
-
-    /// The chosen name of a uniform enumeration.
-    pub fn choice<'n>(&self, node: &'n Node, port: &str) -> &'n str {
-        match node.literal(port) {
-            Literal::Text(text) => text,
-            other => panic!("{port} of {} is an enumeration: {other:?}", node.spec.name),
-        }
-    }
-
-    /// The stops of a uniform ramp.
-    pub fn stops<'n>(&self, node: &'n Node, port: &str) -> &'n Stops {
-        match node.literal(port) {
-            Literal::Stops(stops) => stops,
-            other => panic!("{port} of {} is a ramp: {other:?}", node.spec.name),
-        }
-    }
-
-    /// Reports the footprint of a source, in wavelengths of its dominant detail: `auto` and `split`
-    /// decide by it.
-    pub fn source_footprint(&mut self, wavelengths: Value) {
-        self.footprints.push(wavelengths);
     }
 }

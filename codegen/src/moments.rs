@@ -20,6 +20,7 @@
 mod cubature;
 mod curve;
 mod extremum;
+mod joint;
 mod map;
 mod normal;
 mod piecewise;
@@ -43,7 +44,8 @@ pub use normal::Normal;
 pub use piecewise::{Bump, Knot, Piecewise, Shape};
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Exponential, Polynomial, RealPower, Reciprocal, Sine};
-pub(crate) use tabulated::{Sampled, Samples, Tabulated, sample_points};
+pub use tabulated::Tabulated;
+pub(crate) use tabulated::{Sampled, Samples, sample_points};
 pub use transfer::{Gaussian, Moments, SharedTransfer, Transfer};
 pub use wave::{Corner, LinearWave, SquareWave};
 

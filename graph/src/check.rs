@@ -19,7 +19,9 @@ mod closure;
 mod report;
 mod sources;
 
-use crate::{Behaviour, Diagnostic, Graph, Input, InputView, Literal, Node, NodeId, Source};
+use crate::{
+    Behaviour, Diagnostic, Graph, Input, InputView, Literal, Node, NodeId, PortType, Source, Type,
+};
 pub use class::Class;
 use class::{Incoming, Reason};
 pub use sources::Sources;
@@ -156,7 +158,8 @@ impl InputView for View<'_> {
 ///
 /// # Errors
 /// `unknown-statistics` for each node without statistics that an output needs, unless sampling is
-/// allowed, when it is a warning of the [`Checked`].
+/// allowed, when it is a warning of the [`Checked`]; `unread-file` for each file that such a node
+/// names and whose picture is not in [`Graph::images`].
 pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagnostic>> {
     let needed = needed(&graph);
     let mut signals: Vec<Signal> = Vec::with_capacity(graph.nodes.len());
@@ -214,6 +217,7 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
             };
             list.push(diagnostic);
         }
+        errors.extend(unread_files(&graph, node));
         warnings.extend(diagonal_position(&graph, node, behaviour));
     }
     if errors.is_empty() {
@@ -226,6 +230,27 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
         errors.extend(warnings);
         Err(errors)
     }
+}
+
+/// The files that the node names and that nobody has read: lowering relies on there being none.
+fn unread_files(graph: &Graph, node: &Node) -> Vec<Diagnostic> {
+    let ports = node.spec.inputs.iter().zip(&node.inputs);
+    ports
+        .filter(|(port, _)| port.ty == PortType::Exactly(Type::Filename))
+        .filter_map(|(port, input)| match &input.source {
+            Source::Literal(Literal::Text(name)) if !name.is_empty() => {
+                graph.images.get(name).is_none().then_some((port, name))
+            }
+            _ => None,
+        })
+        .map(|(port, name)| {
+            Diagnostic::error("unread-file", format!("the file `{name}` was not read"))
+                .at(format!("{}/inputs/{}", node.pointer, port.name))
+                .in_node(&*node.name)
+                .in_port(port.name)
+                .help("load the graph from its file, or give the pictures with the text")
+        })
+        .collect()
 }
 
 /// One number where a position is wanted stands for both coordinates, which is seldom meant.

@@ -1,7 +1,7 @@
 //! The resolved graph: names are ids, sub-graphs are expanded, types are promoted, and nodes stand
 //! in topological order.
 
-use crate::{Literal, NodeSpec, Type};
+use crate::{Images, Literal, NodeSpec, Type};
 
 /// A node of a graph, by its position: inputs come before their users.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -135,6 +135,8 @@ pub struct Graph {
     pub nodes: Vec<Node>,
     /// The outputs, in the document's order; at least one.
     pub outputs: Vec<Output>,
+    /// The pictures that the nodes name, as far as whoever owns the files has put them here.
+    pub images: Images,
 }
 
 impl Graph {

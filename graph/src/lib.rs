@@ -17,6 +17,7 @@ mod check;
 mod diagnostic;
 mod document;
 mod graph;
+mod image;
 mod load;
 mod resolve;
 mod schema;
@@ -28,8 +29,9 @@ pub use check::{CheckOptions, Checked, Class, Correlation, Signal, Sources, chec
 pub use diagnostic::{Diagnostic, Severity, suggest};
 pub use document::{Binding, Body, Document, InputEntry, Map, NodeEntry, Reference, VERSION};
 pub use graph::{Graph, Input, Node, NodeId, Output, Parameter, ParameterId, Source};
+pub use image::{FileReference, Images, Picture};
 pub use load::{Loaded, load};
-pub use resolve::{MAX_NESTING, MAX_NODES, resolve};
+pub use resolve::{MAX_NESTING, MAX_NODES, linear_from_srgb, resolve};
 pub use schema::schema;
 pub use setting::{SettingError, parse_setting};
 pub use spec::{

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::document::{Tree, locate};
-use crate::{Diagnostic, Document, Graph, NodeSpec, resolve};
+use crate::resolve::resolve_with_files;
+use crate::{Diagnostic, Document, FileReference, Graph, NodeSpec};
 
 /// What became of a text.
 #[derive(Clone, Debug)]
@@ -14,6 +15,9 @@ pub struct Loaded {
     pub graph: Option<Graph>,
     /// Every error and warning, each with its line and column, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
+    /// The files that the nodes name, whether or not there are errors. Reading them is the caller's
+    /// business, who puts the pictures into [`Graph::images`] and reports at these places.
+    pub files: Vec<FileReference>,
 }
 
 /// Reads, upgrades and resolves a document.
@@ -25,11 +29,13 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
                 document: None,
                 graph: None,
                 diagnostics: vec![*diagnostic],
+                files: Vec::new(),
             };
         }
     };
     let (document, mut diagnostics) = Document::from_tree(text, &mut tree);
     let mut graph = None;
+    let mut files = Vec::new();
     if let Some(document) = &document {
         // Without the nodes, every reference would be reported.
         let sections = ["/nodes", "/inputs", "/graphs"];
@@ -41,11 +47,18 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
         });
         if !lost {
             let failed = !diagnostics.is_empty();
-            let (resolved, found) = resolve(document, specs);
-            let mut found = without_consequences(&diagnostics, found);
+            let resolved = resolve_with_files(document, specs);
+            let mut found = without_consequences(&diagnostics, resolved.diagnostics);
             locate(text, &tree, &mut found);
             diagnostics.extend(found);
-            graph = resolved.filter(|_| !failed);
+            let (names, mut places): (Vec<String>, Vec<Diagnostic>) = (resolved.files.into_iter())
+                .map(|file| (file.name, file.place))
+                .unzip();
+            locate(text, &tree, &mut places);
+            files = (names.into_iter().zip(places))
+                .map(|(name, place)| FileReference::new(name, place))
+                .collect();
+            graph = resolved.graph.filter(|_| !failed);
         }
     }
     diagnostics.sort_by_key(|diagnostic| (diagnostic.line, diagnostic.column));
@@ -53,6 +66,7 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
         document,
         graph,
         diagnostics,
+        files,
     }
 }
 

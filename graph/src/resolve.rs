@@ -20,8 +20,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::diagnostic::did_you_mean;
 use crate::document::Document;
-use crate::{Diagnostic, Graph, NodeSpec};
+use crate::{Diagnostic, FileReference, Graph, NodeSpec};
 
+pub use literal::linear_from_srgb;
 pub(crate) use literal::{color, from_numbers};
 pub(crate) use range::{outside, shown_bounds};
 
@@ -40,6 +41,20 @@ pub fn resolve(
     document: &Document,
     specs: &[&'static NodeSpec],
 ) -> (Option<Graph>, Vec<Diagnostic>) {
+    let resolved = resolve_with_files(document, specs);
+    (resolved.graph, resolved.diagnostics)
+}
+
+/// What [`resolve_with_files`] finds.
+pub(crate) struct Resolved {
+    pub(crate) graph: Option<Graph>,
+    pub(crate) diagnostics: Vec<Diagnostic>,
+    /// The files that the nodes name, each place once.
+    pub(crate) files: Vec<FileReference>,
+}
+
+/// The same with the files that the nodes name, whether or not there are errors.
+pub(crate) fn resolve_with_files(document: &Document, specs: &[&'static NodeSpec]) -> Resolved {
     let mut context = Context::new(specs);
     let mut templates = template::build(&mut context, document);
     order::sort(&mut context, &mut templates);
@@ -48,7 +63,15 @@ pub fn resolve(
     let graph = fits.then(|| expand::expand(&mut context, document, &templates));
     let failed = context.diagnostics.iter().any(Diagnostic::is_error);
     let graph = if failed { None } else { graph };
-    (graph, context.diagnostics)
+    // A sub-graph that is used several times names its files once.
+    let mut seen = FxHashSet::default();
+    let mut files = context.files;
+    files.retain(|file| seen.insert(file.place.pointer.clone()));
+    Resolved {
+        graph,
+        diagnostics: context.diagnostics,
+        files,
+    }
 }
 
 /// What every part of the resolver needs.
@@ -56,6 +79,7 @@ struct Context<'s> {
     specs: &'s [&'static NodeSpec],
     by_name: FxHashMap<&'static str, usize>,
     diagnostics: Vec<Diagnostic>,
+    files: Vec<FileReference>,
     /// What was reported, so that a sub-graph used a thousand times reports once.
     reported: FxHashSet<(&'static str, Option<String>)>,
     /// How many names may still be compared for suggestions: a file of 100,000 wrong names in a
@@ -74,6 +98,7 @@ impl<'s> Context<'s> {
             specs,
             by_name,
             diagnostics: Vec::new(),
+            files: Vec::new(),
             reported: FxHashSet::default(),
             comparisons: 300_000,
         }

@@ -266,7 +266,7 @@ fn default(port: &PortSpec) -> Option<Value> {
         Default::Boolean(flag) => flag.into(),
         Default::Vector2(xy) => xy.map(decimal).to_vec().into(),
         Default::Color3(rgb) => rgb.map(decimal).to_vec().into(),
-        Default::Choice(name) => name.into(),
+        Default::Choice(text) | Default::Text(text) => text.into(),
         Default::Stops(stops) => {
             let stops = stops.iter();
             stops

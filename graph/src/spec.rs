@@ -69,6 +69,8 @@ pub enum Default {
     Color3([f32; 3]),
     /// One of the port's names.
     Choice(&'static str),
+    /// Text, or the name of a file; empty for none.
+    Text(&'static str),
     /// Stops `(at, value)` of a float ramp.
     Stops(&'static [(f32, f32)]),
     /// The surface's texture coordinates.
@@ -158,7 +160,12 @@ impl PortSpec {
         default: Default,
         doc: &'static str,
     ) -> Self {
-        let uniform = matches!(ty, PortType::Choice(_) | PortType::Stops);
+        let uniform = matches!(
+            ty,
+            PortType::Choice(_)
+                | PortType::Stops
+                | PortType::Exactly(Type::String | Type::Filename)
+        );
         Self {
             name,
             ty,

@@ -44,6 +44,25 @@ const fn spec(
 
 const FLOAT: OutputType = OutputType::Exactly(Type::Float);
 
+static PICTURE: NodeSpec = spec(
+    "picture",
+    &[
+        PortSpec::new(
+            "file",
+            PortType::Exactly(Type::Filename),
+            Default::Text(""),
+            "A picture.",
+        ),
+        PortSpec::new(
+            "signature",
+            PortType::Choice(&["color3", "float"]),
+            Default::Choice("color3"),
+            "A type.",
+        ),
+    ],
+    OutputType::Named("signature"),
+    |_| Behaviour::Pattern,
+);
 static TEXCOORD_NODE: NodeSpec = spec("texcoord", &[], OutputType::Exactly(Type::Vector2), |_| {
     Behaviour::Position
 });
@@ -174,6 +193,7 @@ pub(crate) static SPECS: &[&NodeSpec] = &[
     &RAMP,
     &CHECKER,
     &LUMINANCE,
+    &PICTURE,
 ];
 
 /// A document with these `nodes` and `outputs` (JSON without the outer braces).

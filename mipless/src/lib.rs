@@ -64,9 +64,13 @@
 //! ```
 
 mod evaluator;
+mod files;
+mod picture;
+mod resource;
 mod texture;
 
 pub use evaluator::{SetError, TextureEvaluator};
+pub use files::{Files, Folder, LARGEST_FILE, NoFiles};
 pub use mipless_codegen::cpu::Footprint;
 pub use mipless_codegen::ir::Program;
 pub use mipless_codegen::{Method, NodeDef, Options, PixelFilter, target, wgsl};
@@ -75,4 +79,5 @@ pub use mipless_graph::{
     parse_setting, schema,
 };
 pub use mipless_nodes::catalogue;
-pub use texture::{Texture, specs};
+pub use picture::{LARGEST_PICTURE, LARGEST_SIDE};
+pub use texture::{FromFileError, Texture, specs};

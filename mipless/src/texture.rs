@@ -1,9 +1,13 @@
 //! A checked graph with its catalogue.
 
-use crate::{Options, Program, TextureEvaluator};
+use crate::files::{Files, Folder, NoFiles};
+use crate::{Options, Program, TextureEvaluator, resource};
+use std::fmt;
+use std::io;
+use std::path::Path;
+
 use mipless_graph::{
-    CheckOptions, Checked, Diagnostic, Document, NodeSpec, Output, Parameter, Severity, Signal,
-    check, load,
+    CheckOptions, Checked, Diagnostic, Document, NodeSpec, Output, Parameter, Signal, check, load,
 };
 
 /// The specs of the catalogue.
@@ -14,6 +18,31 @@ pub fn specs() -> Vec<&'static NodeSpec> {
         .collect()
 }
 
+/// Why a file gives no texture.
+#[derive(Debug)]
+pub enum FromFileError {
+    /// It cannot be read, or is not UTF-8.
+    Unreadable(io::Error),
+    /// The graph has mistakes.
+    Mistakes(Vec<Diagnostic>),
+}
+
+impl fmt::Display for FromFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable(error) => write!(f, "the file cannot be read: {error}"),
+            Self::Mistakes(mistakes) => {
+                for (index, mistake) in mistakes.iter().enumerate() {
+                    write!(f, "{}{mistake}", if index == 0 { "" } else { "\n" })?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl std::error::Error for FromFileError {}
+
 /// A texture graph without mistakes.
 #[derive(Clone, Debug)]
 pub struct Texture {
@@ -23,7 +52,18 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// Loads and checks a JSON graph.
+    /// Loads and checks the JSON graph of a file, with the pictures that it names, relative to
+    /// its folder.
+    ///
+    /// # Errors
+    /// If the file cannot be read as text; else every mistake, located, and the warnings with them.
+    pub fn from_file(path: &Path) -> Result<Self, FromFileError> {
+        let text = std::fs::read_to_string(path).map_err(FromFileError::Unreadable)?;
+        let folder = Folder(path.parent().unwrap_or(Path::new("")).to_path_buf());
+        Self::with_files(&text, &CheckOptions::default(), &folder).map_err(FromFileError::Mistakes)
+    }
+
+    /// Loads and checks a JSON graph that names no files.
     ///
     /// # Errors
     /// Every mistake, located, and the warnings with them.
@@ -37,24 +77,46 @@ impl Texture {
     /// # Errors
     /// Every mistake, located, and the warnings with them.
     pub fn with_options(text: &str, options: &CheckOptions) -> Result<Self, Vec<Diagnostic>> {
+        Self::with_files(text, options, &NoFiles)
+    }
+
+    /// The same for a graph that may name files, which `files` gives: pictures of at most
+    /// [`crate::LARGEST_SIDE`] texels a side and [`crate::LARGEST_PICTURE`] in all, in files of at
+    /// most [`crate::LARGEST_FILE`] bytes.
+    ///
+    /// # Errors
+    /// Every mistake, those of the files among them, located, and the warnings with them.
+    pub fn with_files(
+        text: &str,
+        options: &CheckOptions,
+        files: &dyn Files,
+    ) -> Result<Self, Vec<Diagnostic>> {
         let loaded = load(text, &specs());
-        let (Some(graph), Some(document)) = (loaded.graph, loaded.document) else {
-            return Err(loaded.diagnostics);
+        let (images, found) = resource::read(&loaded.files, files);
+        let mut diagnostics = loaded.diagnostics;
+        diagnostics.extend(found);
+        diagnostics.sort_by_key(|diagnostic| (diagnostic.line, diagnostic.column));
+        let (Some(mut graph), Some(document)) = (loaded.graph, loaded.document) else {
+            return Err(diagnostics);
         };
-        let mut warnings = loaded.diagnostics;
-        debug_assert!(warnings.iter().all(|d| d.severity == Severity::Warning));
+        graph.images = images;
+        let unusable = diagnostics.iter().any(Diagnostic::is_error);
         match check(graph, options) {
-            Ok(checked) => {
-                warnings.extend(checked.warnings().iter().cloned());
+            Ok(checked) if !unusable => {
+                diagnostics.extend(checked.warnings().iter().cloned());
                 Ok(Self {
                     checked,
                     document,
-                    warnings,
+                    warnings: diagnostics,
                 })
             }
+            Ok(checked) => {
+                diagnostics.extend(checked.warnings().iter().cloned());
+                Err(diagnostics)
+            }
             Err(mistakes) => {
-                warnings.extend(mistakes);
-                Err(warnings)
+                diagnostics.extend(mistakes);
+                Err(diagnostics)
             }
         }
     }

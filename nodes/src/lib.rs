@@ -11,6 +11,7 @@ mod hsv;
 mod noise;
 mod page;
 mod pattern;
+mod picture;
 mod vector;
 
 mod absval;
@@ -24,6 +25,7 @@ mod blackbody;
 mod brick;
 mod brightness;
 mod burn;
+mod byexample;
 mod ceil;
 mod cellnoise2d;
 mod checkerboard;
@@ -65,6 +67,7 @@ mod hsvtorgb;
 mod ifequal;
 mod ifgreater;
 mod ifgreatereq;
+mod image;
 mod r#in;
 mod invert;
 mod kaleidoscope;
@@ -151,6 +154,7 @@ static CATALOGUE: &[NodeDef] = &[
     position::DEF,
     texcoord::DEF,
     // Noise.
+    byexample::DEF,
     cellnoise2d::DEF,
     fractal2d::DEF,
     fractal3d::DEF,
@@ -173,6 +177,7 @@ static CATALOGUE: &[NodeDef] = &[
     gradientradial::DEF,
     grid::DEF,
     hexagon::DEF,
+    image::DEF,
     line::DEF,
     ramp4::DEF,
     ramplr::DEF,

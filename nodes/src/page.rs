@@ -83,6 +83,8 @@ fn default_text(port: &PortSpec) -> String {
         Default::Vector2(xy) => format!("{xy:?}"),
         Default::Color3(rgb) => format!("{rgb:?}"),
         Default::Choice(name) => format!("`{name}`"),
+        Default::Text("") => "none".to_owned(),
+        Default::Text(text) => format!("`{text}`"),
         Default::Stops(stops) => stops
             .iter()
             .map(|(at, x)| format!("{x} at {at}"))
@@ -180,7 +182,7 @@ fn describe_port(port: &PortSpec) -> Value {
             Default::Boolean(flag) => json!(flag),
             Default::Vector2(xy) => xy.into_iter().map(number).collect(),
             Default::Color3(rgb) => rgb.into_iter().map(number).collect(),
-            Default::Choice(name) => json!(name),
+            Default::Choice(text) | Default::Text(text) => json!(text),
             Default::Stops(stops) => (stops.iter())
                 .map(|&(at, value)| json!({ "at": number(at), "value": number(value) }))
                 .collect(),

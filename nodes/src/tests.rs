@@ -6,12 +6,13 @@ mod law;
 mod vector;
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use mipless_codegen::cpu::{Footprint, eval_program};
 use mipless_codegen::ir::Program;
 use mipless_codegen::{Lower, Method, NodeDef, Options, compile};
 use mipless_graph::{
-    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, PortSpec,
+    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, Picture, PortSpec,
     PortType, Type, check, load,
 };
 use serde_json::{Value, json};
@@ -60,6 +61,17 @@ fn gaussian(lower: &mut Lower<'_>, node: &Node) -> mipless_codegen::Bundle {
     vec![signal]
 }
 
+/// What every file of an example holds.
+fn ripples() -> Picture {
+    let wave = |i: usize, channel: usize| {
+        let (x, y) = ((i % 16) as f32, (i / 16) as f32);
+        let turns = [x / 16.0, (x + y) / 8.0, (x - 2.0 * y) / 16.0][channel];
+        0.5 + 0.4 * (std::f32::consts::TAU * turns).sin()
+    };
+    let numbers = (0..3 * 16 * 16).map(|i| wave(i / 3, i % 3));
+    Picture::new((16, 16), 3, false, numbers.collect())
+}
+
 fn definitions() -> Vec<NodeDef> {
     let mut all = catalogue().to_vec();
     all.push(NodeDef {
@@ -73,9 +85,12 @@ fn compiled(text: &str, method: Method) -> Program {
     let definitions = definitions();
     let specs: Vec<&'static NodeSpec> = definitions.iter().map(|def| def.spec).collect();
     let loaded = load(text, &specs);
-    let graph = loaded
+    let mut graph = loaded
         .graph
         .unwrap_or_else(|| panic!("{text}\n{:?}", loaded.diagnostics));
+    for file in &loaded.files {
+        graph.images.insert(&*file.name, Arc::new(ripples()));
+    }
     let checked = check(
         graph,
         &CheckOptions {

@@ -107,7 +107,7 @@ fn read(path: &Path) -> Graph {
         .to_string_lossy()
         .into_owned();
     let text = std::fs::read_to_string(path).expect("a readable graph");
-    let texture = Texture::from_json(&text).unwrap_or_else(|e| panic!("{name}: {e:#?}"));
+    let texture = Texture::from_file(path).unwrap_or_else(|e| panic!("{name}: {e}"));
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let wavelength = json
         .pointer("/extra/mipless/wavelength")

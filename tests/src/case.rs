@@ -1,7 +1,8 @@
 //! The graphs that every suite runs over: those of `graphs/` and the example of every node.
 
 use crate::root;
-use mipless::Texture;
+use mipless::{Diagnostic, Folder, Texture};
+use mipless_graph::CheckOptions;
 use std::fs;
 
 /// One graph.
@@ -16,13 +17,13 @@ pub struct Case {
 }
 
 impl Case {
-    /// Loads a graph.
+    /// Loads a graph; the files that it names are those of `graphs/`.
     ///
     /// # Panics
     /// If the graph has mistakes.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         let (name, text) = (name.into(), text.into());
-        let texture = Texture::from_json(&text).unwrap_or_else(|mistakes| {
+        let texture = load(&text).unwrap_or_else(|mistakes| {
             let mistakes: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
             panic!("{name} has mistakes:\n{}", mistakes.join("\n"))
         });
@@ -32,6 +33,15 @@ impl Case {
             texture,
         }
     }
+}
+
+/// Loads and checks a graph; the files that it names are those of `graphs/`.
+///
+/// # Errors
+/// Every mistake, located.
+pub fn load(text: &str) -> Result<Texture, Vec<Diagnostic>> {
+    let folder = Folder(root().join("graphs"));
+    Texture::with_files(text, &CheckOptions::default(), &folder)
 }
 
 /// The graphs of `graphs/`, by name.

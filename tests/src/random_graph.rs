@@ -46,7 +46,8 @@ fn inputs(random: &mut Random, spec: &NodeSpec, made: &[Made]) -> (Map<String, V
     let mut stops = Type::Float;
     for port in spec.inputs {
         let choice = random.unit();
-        if choice < 0.15 && !matches!(port.ty, PortType::Any) {
+        let typed = port.ty == PortType::Any || spec.output == OutputType::Named(port.name);
+        if choice < 0.15 && !typed {
             continue;
         }
         let value = match port.ty {
@@ -137,6 +138,8 @@ fn random_stops(random: &mut Random, colors: bool) -> Value {
 fn literal(random: &mut Random, port: &PortSpec, ty: Type) -> Value {
     match ty {
         Type::Boolean => json!(random.happens(0.5)),
+        Type::Filename => json!("images/granite.png"),
+        Type::String => json!(""),
         Type::Integer => json!(number(random, port).round() as i64),
         _ if ty.components() <= 1 => json!(number(random, port)),
         _ => (0..ty.components()).map(|_| number(random, port)).collect(),

@@ -7,7 +7,7 @@ use mipless::target::validate;
 use mipless::wgsl::{Entry, Options as Emission, emit};
 use mipless::{Diagnostic, Footprint, Method, Options, Texture};
 use mipless_codegen::ir::verify;
-use mipless_tests::case::all;
+use mipless_tests::case::{all, load};
 use mipless_tests::random::Random;
 use mipless_tests::{METHODS, cases, random_graph};
 use proptest::prelude::*;
@@ -89,7 +89,7 @@ fn random_graphs_mostly_pass_the_check() {
     let mut random = Random::new(2);
     let accepted = (0..100).filter(|_| {
         let text = random_graph::text(&mut random, 6);
-        Texture::from_json(&text).is_ok()
+        load(&text).is_ok()
     });
     // The others divide by a signal, or something of that kind.
     assert!(
@@ -104,7 +104,7 @@ proptest! {
     #[test]
     fn random_graphs_compile_and_evaluate(seed: u64, nodes in 1_usize..12) {
         let text = random_graph::text(&mut Random::new(seed), nodes);
-        match Texture::from_json(&text) {
+        match load(&text) {
             Ok(texture) => holds(&texture, &text),
             Err(mistakes) => located(&mistakes, &text),
         }
@@ -182,7 +182,7 @@ proptest! {
             mutilate(&mut document, &mut random);
         }
         let text = serde_json::to_string_pretty(&document).expect("JSON");
-        match Texture::from_json(&text) {
+        match load(&text) {
             Ok(texture) => {
                 let options = Options { method: Method::Local, ..Options::default() };
                 let outputs = texture.evaluator(&options).evaluate(&footprints());
@@ -203,7 +203,7 @@ proptest! {
             bytes[index] = *random.choose(b"{}[]\",:0e-x\\\n");
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        if let Err(mistakes) = Texture::from_json(&text) {
+        if let Err(mistakes) = load(&text) {
             located(&mistakes, &text);
         }
     }

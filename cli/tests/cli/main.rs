@@ -2,6 +2,7 @@
 
 mod bad_graphs;
 mod folder;
+mod images;
 
 use folder::{Folder, GRAPH, Run};
 use serde_json::Value;

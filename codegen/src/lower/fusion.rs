@@ -69,6 +69,9 @@ impl<'a> Compiler<'a> {
             crossed: self.crossed.clone(),
             literal: self.literal.clone(),
             functions: Default::default(),
+            tables: Default::default(),
+            made: Default::default(),
+            tabulated: Default::default(),
             fused: Default::default(),
             maps: Default::default(),
             gains: Default::default(),
@@ -219,11 +222,7 @@ impl Lower<'_> {
                 .insert(index, Arc::clone(&samples));
             samples
         });
-        let levels = compiler
-            .levels
-            .get()
-            .unwrap_or_else(|| Tabulated::levels(self.module));
-        compiler.levels.set(Some(levels));
+        let levels = self.levels();
         let name = super::identifier(&node.name);
         let function = self.function(&format!("fused {index}"), |module| {
             function(compiler, module, index, entry)

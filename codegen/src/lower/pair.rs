@@ -326,6 +326,7 @@ fn function(
     let unused = entries[0].mean;
     let arguments = Arguments {
         footprint: [unused; 8],
+        position: None,
         parameters: Vec::new(),
     };
     let mut lower = Lower::with(compiler, module, Algebra::new(b, mode), arguments);

@@ -222,7 +222,7 @@ pub(crate) type Samples = Arc<LazyLock<Vec<Sampled>, Box<dyn Fn() -> Vec<Sampled
 /// A function of one number with moments that are baked when their tables are first read; tables
 /// that nothing reads are pruned with the module.
 #[derive(Clone, Debug)]
-pub(crate) struct Tabulated {
+pub struct Tabulated {
     function: FunctionRef,
     component: usize,
     domain: [f32; 2],

@@ -8,8 +8,8 @@ use super::{Context, literal, range};
 use crate::diagnostic::escape;
 use crate::document::{Document, InputEntry};
 use crate::{
-    Diagnostic, Graph, Input, Literal, Node, NodeId, NodeSpec, Output, OutputType, Parameter,
-    ParameterId, PortType, Source, Type,
+    Diagnostic, FileReference, Graph, Images, Input, Literal, Node, NodeId, NodeSpec, Output,
+    OutputType, Parameter, ParameterId, PortType, Source, Type,
 };
 
 /// What became of a node of a template.
@@ -47,6 +47,7 @@ pub(super) fn expand(
         parameters: Vec::new(),
         nodes: Vec::new(),
         outputs: Vec::new(),
+        images: Images::default(),
     };
     let mut inputs = Vec::with_capacity(document.body.inputs.len());
     for (index, (name, entry)) in document.body.inputs.iter().enumerate() {
@@ -356,6 +357,12 @@ fn node(
                 Ok(value) => {
                     if let Literal::Stops(read) = &value {
                         stops = read.ty;
+                    }
+                    if let (Literal::Text(name), Type::Filename) = (&value, ty)
+                        && !name.is_empty()
+                    {
+                        let place = place.port("", port.name, String::new());
+                        context.files.push(FileReference::new(name.clone(), place));
                     }
                     Some(Input {
                         source: Source::Literal(value),

@@ -126,7 +126,7 @@ pub(crate) fn color(text: &str) -> Option<Literal> {
 }
 
 /// The transfer function of IEC 61966-2-1 (sRGB), §5.2, inverted.
-fn linear_from_srgb(encoded: f64) -> f64 {
+pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 {
         encoded / 12.92
     } else {
@@ -289,7 +289,7 @@ pub(super) fn default(port: &PortSpec, ty: Type) -> Option<Literal> {
         Default::Boolean(flag) => Literal::Boolean(flag),
         Default::Vector2(xy) => numbers(&xy),
         Default::Color3(rgb) => numbers(&rgb),
-        Default::Choice(name) => Literal::Text(name.to_owned()),
+        Default::Choice(text) | Default::Text(text) => Literal::Text(text.to_owned()),
         Default::Stops(stops) => {
             let stops = stops.iter().map(|(at, x)| Stop {
                 at: *at,

@@ -323,3 +323,27 @@ fn a_hundred_thousand_mistakes_do_not_take_hours() {
         start.elapsed()
     );
 }
+
+#[test]
+fn files_are_named_with_their_places_and_must_be_read() {
+    let text = text(
+        r#""nodes": { "a": { "type": "picture", "inputs": { "file": "b.png" } } },
+        "outputs": { "o": { "node": "a" } }"#,
+    );
+    let loaded = load(&text, SPECS);
+    let [file] = &loaded.files[..] else {
+        panic!("one file: {:?}", loaded.files)
+    };
+    assert_eq!(file.name, "b.png");
+    let error = file.error("missing-file", "it is not there");
+    assert_eq!(error.pointer.as_deref(), Some("/nodes/a/inputs/file"));
+    assert!(error.line.is_some() && error.node.as_deref() == Some("a"));
+    let graph = loaded.graph.expect("no mistakes but the file");
+    assert_eq!(
+        graph.outputs[0].ty,
+        crate::Type::Color3,
+        "the signature's type"
+    );
+    let errors = crate::check(graph, &crate::CheckOptions::default()).expect_err("nobody read it");
+    assert_eq!(places(&errors), [("unread-file", "/nodes/a/inputs/file")]);
+}

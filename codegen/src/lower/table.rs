@@ -1,0 +1,137 @@
+//! What nodes ask of pictures and tables: numbers that are computed when they are first read.
+
+use super::{Lower, PixelFilter, identifier};
+use crate::ir::{Builder, Numbers};
+use crate::moments::{Sampled, Samples, Tabulated, sample_points};
+use mipless_graph::{Node, Picture};
+use std::any::Any;
+use std::sync::{Arc, LazyLock};
+
+impl Lower<'_> {
+    /// The picture that a uniform file name stands for; `None` where the name is empty.
+    pub fn picture(&self, node: &Node, port: &str) -> Option<Arc<Picture>> {
+        let name = self.choice(node, port);
+        let found = self.compiler.graph.images.get(name).cloned();
+        assert!(
+            name.is_empty() || found.is_some(),
+            "the check has found the picture {name}"
+        );
+        found
+    }
+
+    /// What is made once for each key, for all functions of the graph; the key names its type and
+    /// whatever it depends on.
+    ///
+    /// # Panics
+    /// If the key stands for something of another type.
+    pub fn once<T: Any + Send + Sync>(&self, key: &str, make: impl FnOnce() -> T) -> Arc<T> {
+        let known = self.compiler.made.borrow().get(key).cloned();
+        let made = known.unwrap_or_else(|| {
+            let made: Arc<dyn Any + Send + Sync> = Arc::new(make());
+            let shared = Arc::clone(&made);
+            self.compiler.made.borrow_mut().insert(key.to_owned(), made);
+            shared
+        });
+        made.downcast()
+            .unwrap_or_else(|_| panic!("{key} is of another type"))
+    }
+
+    /// The pixel filter, whose standard deviation positions already have.
+    pub fn filter(&self) -> PixelFilter {
+        self.compiler.options.filter
+    }
+
+    /// A table of the module, made once for each key; the key names whatever it depends on. Its name
+    /// is `name`, or that with a number where the module has a table of that name.
+    pub fn table(&mut self, key: &str, name: &str, numbers: impl FnOnce() -> Numbers) -> u32 {
+        if let Some(&table) = self.compiler.tables.borrow().get(key) {
+            return table;
+        }
+        let taken = |name: &str| self.module.tables.iter().any(|table| table.name == name);
+        let mut free = identifier(name);
+        for number in 2.. {
+            if !taken(&free) {
+                break;
+            }
+            free = format!("{}_{number}", identifier(name));
+        }
+        let table = self.module.push_table(free, numbers());
+        self.compiler
+            .tables
+            .borrow_mut()
+            .insert(key.to_owned(), table);
+        table
+    }
+
+    /// A function of one number as a transfer by tables, made once for each key: values between 2049
+    /// points of the domain are interpolated, and beyond it the function is constant. `range` bounds
+    /// it. The numbers are computed when they are first read.
+    pub fn tabulate(
+        &mut self,
+        key: &str,
+        name: &str,
+        (domain, range): ([f32; 2], [f32; 2]),
+        function: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Tabulated {
+        if let Some(known) = self.compiler.tabulated.borrow().get(key) {
+            return known.clone();
+        }
+        const INTERVALS: usize = 2048;
+        let function = Arc::new(function);
+        let [low, high] = domain;
+        let at = Arc::clone(&function);
+        let values = self.table(key, &format!("{name}_values"), || {
+            let step = (f64::from(high) - f64::from(low)) / INTERVALS as f64;
+            let value = move |i| at(f64::from(low) + step * f64::from(i)) as f32;
+            Numbers::lazy(INTERVALS + 1, move || {
+                (0..=INTERVALS as u32).map(&value).collect()
+            })
+        });
+        let mut b = Builder::new(format!("{}_of", identifier(name)), "A function by a table.");
+        let x = b.param_f32("x");
+        let inside = b.clamp(x, low, high);
+        let from_low = b.offset(inside, -low);
+        let place = b.scale(from_low, INTERVALS as f32 / (high - low));
+        let left = b.floor(place);
+        let left = b.clamp(left, 0.0, (INTERVALS - 1) as f32);
+        let share = b.sub(place, left);
+        let index = b.trunc_i(left);
+        let index = b.cast_u(index);
+        let one = b.u32(1);
+        let next = b.add_u(index, one);
+        let (from, to) = (b.load(values, index), b.load(values, next));
+        let difference = b.sub(to, from);
+        let part = b.mul(difference, share);
+        let value = b.add(from, part);
+        b.result("value", value);
+        let of = b.finish(self.module);
+        let samples: Samples = Arc::new(LazyLock::new(Box::new(move || {
+            let points = sample_points(domain).into_iter();
+            let values = points.map(|x| function(x.into())).collect();
+            vec![Sampled::new(values, false)]
+        })));
+        let levels = self.levels();
+        let bounds = (domain, false, range);
+        let table = Tabulated::new(
+            self.module,
+            levels,
+            &identifier(name),
+            (of, 0),
+            bounds,
+            &samples,
+        );
+        self.compiler
+            .tabulated
+            .borrow_mut()
+            .insert(key.to_owned(), table.clone());
+        table
+    }
+
+    /// The table of levels that pyramids of functions share.
+    pub(super) fn levels(&mut self) -> u32 {
+        let levels = self.compiler.levels.get();
+        let levels = levels.unwrap_or_else(|| Tabulated::levels(self.module));
+        self.compiler.levels.set(Some(levels));
+        levels
+    }
+}

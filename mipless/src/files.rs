@@ -1,0 +1,68 @@
+//! Where the files come from that a graph names.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::PathBuf;
+
+/// The largest file that is read, in bytes.
+pub const LARGEST_FILE: u64 = 256 << 20;
+
+/// Gives the bytes of the files that graphs name: a folder, an archive, a database of a tool.
+pub trait Files {
+    /// The bytes of the file that a graph calls `name`.
+    ///
+    /// # Errors
+    /// If there is no such file, it cannot be read, or it has more than [`LARGEST_FILE`] bytes
+    /// ([`io::ErrorKind::FileTooLarge`]).
+    fn read(&self, name: &str) -> io::Result<Vec<u8>>;
+}
+
+/// The files of a folder; names are relative to it, absolute ones are taken as they are.
+#[derive(Clone, Debug)]
+pub struct Folder(pub PathBuf);
+
+impl Files for Folder {
+    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
+        let path = self.0.join(name);
+        let metadata = fs::metadata(&path)?;
+        if metadata.is_dir() {
+            return Err(io::ErrorKind::IsADirectory.into());
+        }
+        // A pipe might never end, and never begin.
+        if !metadata.is_file() {
+            return Err(io::Error::other("it is no regular file"));
+        }
+        let mut bytes = Vec::new();
+        let read = File::open(&path)?.take(LARGEST_FILE + 1);
+        io::BufReader::new(read).read_to_end(&mut bytes)?;
+        if bytes.len() as u64 > LARGEST_FILE {
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        Ok(bytes)
+    }
+}
+
+/// No files: what a text without a place has.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFiles;
+
+impl Files for NoFiles {
+    fn read(&self, _: &str) -> io::Result<Vec<u8>> {
+        Err(io::Error::new(
+            io::ErrorKind::NotFound,
+            "the graph is a text without a folder",
+        ))
+    }
+}
+
+/// Files in memory, by name.
+impl Files for BTreeMap<String, Vec<u8>> {
+    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
+        let bytes = self.get(name).ok_or(io::ErrorKind::NotFound)?;
+        if bytes.len() as u64 > LARGEST_FILE {
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        Ok(bytes.clone())
+    }
+}
