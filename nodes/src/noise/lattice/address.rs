@@ -75,7 +75,7 @@ impl Address {
     }
 
     /// With rows counted from `row` (a real, relative to the cell).
-    pub(super) fn from_row(mut self, b: &mut Builder, row: Value) -> Self {
+    pub(super) fn rows_counted_from(mut self, b: &mut Builder, row: Value) -> Self {
         match &mut self.tile {
             Some(tile) => tile.origin[1] = b.add(tile.origin[1], row),
             None => {

@@ -100,7 +100,10 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     let start = b.add(y, half);
     let start = b.floor(start);
     let start = b.offset(start, 1.0);
-    let address = state.address(b).swapped(b, swapped).from_row(b, start);
+    let address = state
+        .address(b)
+        .swapped(b, swapped)
+        .rows_counted_from(b, start);
     // Of four rows the one that is not among the nearest three.
     let (first_row, last_row, no_row) = (b.u32(0), b.u32(3), b.u32(u32::MAX));
     let floor = b.floor(y);

@@ -83,7 +83,7 @@ pub(super) fn octave(module: &mut Module, octaves: Octaves) -> FunctionRef {
         let e = envelope(b, square);
         captures.extend([e, b.mul(e, x), b.mul(e, square)]);
     }
-    let address = state.address(b).from_row(b, start_y);
+    let address = state.address(b).rows_counted_from(b, start_y);
     captures.extend(address.captures());
     let (zero, three) = (b.f32(0.0), b.u32(3));
     let rows = b.fold(&row, three, &[zero], &captures)[0];
