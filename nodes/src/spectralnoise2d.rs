@@ -20,7 +20,8 @@ static SPEC: NodeSpec = NodeSpec {
             with a_i ∝ |f_i|^−falloff, a power spectral density of |f|^(−2 falloff − 2); `list`: the \
             frequencies and amplitudes of `lines`, each line of as many waves as its share of the \
             variance, at least one.",
-        statistics: "Mean `pivot`, standard deviation amplitude/4. With n = (Σ a²)²/Σ a⁴, the number \
+        statistics: "Mean `pivot`, standard deviation amplitude/4; the noise repeats after 1024 periods of \
+            `frequency`. With n = (Σ a²)²/Σ a⁴, the number \
             of equal waves with the same fourth cumulant, max |CDF − Φ| is 0.044/n: 0.0014 for a \
             band of 32 waves. The range is amplitude/4 · √(2n) at most for equal waves. With \
             w = 2πf and q = wᵀΣw each wave is damped by e^{−q/2}; gradient and Hessian are its \

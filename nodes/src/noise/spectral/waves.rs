@@ -78,21 +78,24 @@ struct Stratum {
 }
 
 impl Density {
-    /// One stratum a wave, with amplitudes of any scale.
-    fn strata(&self, count: u32) -> Vec<Stratum> {
+    /// One stratum a wave, with amplitudes of any scale. Every seed has strata of its own: waves of
+    /// two noises that share them would often coincide.
+    fn strata(&self, count: u32, seed: i32) -> Vec<Stratum> {
+        let [turned, shifted] = [0, 1].map(|stream| uniform(seed, u32::MAX, stream));
         let turn = |i: u32, n: u32| [f64::from(i) / f64::from(n), f64::from(i + 1) / f64::from(n)];
         match self {
             Self::Power { octaves, falloff } => (0..count)
                 .map(|i| {
                     // The golden ratio orders frequencies independently of directions.
-                    let start = (f64::from(i) * 0.618_033_988_749_895).fract();
+                    let order = (f64::from(i) * 0.618_033_988_749_895 + shifted).fract();
+                    let start = order * (1.0 - 1.0 / f64::from(count));
                     let share = [start, start + 1.0 / f64::from(count)];
                     let octave = share.map(|s| f64::from(*octaves) * (s - 0.5));
                     let middle = 0.5 * (octave[0] + octave[1]);
                     Stratum {
                         amplitude: (-f64::from(*falloff) * middle).exp2() as f32,
                         frequencies: octave.map(f64::exp2),
-                        directions: turn(i, count),
+                        directions: turn(i, count).map(|t| t + turned),
                     }
                 })
                 .collect(),
@@ -105,7 +108,7 @@ impl Density {
                     let n = (count as f32 * share).round().max(1.0) as u32;
                     let frequency = f64::from(frequency.clamp(1.0 / FARTHEST, FARTHEST));
                     // Lines are turned against one another.
-                    let start = (k as f64 * 0.618_033_988_749_895).fract() / f64::from(n);
+                    let start = turned + (k as f64 * 0.618_033_988_749_895).fract() / f64::from(n);
                     strata.extend((0..n).map(|i| Stratum {
                         amplitude: amplitude / (n as f32).sqrt(),
                         frequencies: [frequency; 2],
@@ -122,7 +125,7 @@ impl Spectrum {
     /// The waves. Each is, of a few candidates, the one whose sums and differences with pairs of
     /// earlier ones stay farthest from 0.
     pub(super) fn waves(&self) -> Vec<Wave> {
-        let strata = self.density.strata(self.count);
+        let strata = self.density.strata(self.count, self.seed);
         let energy: f32 = strata.iter().map(|s| 0.5 * s.amplitude * s.amplitude).sum();
         let unit = if energy > 0.0 {
             energy.sqrt().recip()
@@ -163,7 +166,7 @@ impl Spectrum {
     /// fourth cumulant: n of them are 0.035/n off, few of them 0.044/n (by their characteristic
     /// function).
     pub(crate) fn deviation(&self) -> f32 {
-        let powers = (self.density.strata(self.count).into_iter())
+        let powers = (self.density.strata(self.count, self.seed).into_iter())
             .map(|s| s.amplitude * s.amplitude)
             .fold([0.0f32; 2], |[sum, squares], p| [sum + p, squares + p * p]);
         let [sum, squares] = powers;
