@@ -185,6 +185,16 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
         if !needed[index] {
             continue;
         }
+        if let Behaviour::Refused { port, reason } = behaviour {
+            let message = format!("`{port}` of `{}` does not fit its other inputs", node.name);
+            errors.push(
+                Diagnostic::error("inputs-disagree", message)
+                    .at(format!("{}/inputs/{port}", node.pointer))
+                    .in_node(&*node.name)
+                    .in_port(port)
+                    .because(reason),
+            );
+        }
         if let Behaviour::Unknown(reason) = behaviour {
             let message = format!("`{}` (`{}`) has no statistics", node.name, node.spec.name);
             let diagnostic = if options.allow_sampling {

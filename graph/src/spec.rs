@@ -240,6 +240,13 @@ pub enum Behaviour {
     Pattern,
     /// No statistics, for this reason.
     Unknown(&'static str),
+    /// The uniform ports contradict each other: a mistake at `port`, for this reason.
+    Refused {
+        /// Where it is reported.
+        port: &'static str,
+        /// What is wanted.
+        reason: &'static str,
+    },
 }
 
 /// What a class rule sees of a node's inputs.

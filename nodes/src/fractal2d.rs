@@ -1,9 +1,11 @@
 //! `fractal2d`: a sum of octaves of lattice noise.
 
 use crate::noise::kernel::Kernel;
-use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
-use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position, shaped};
-use crate::noise2d::class;
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
+use crate::noise::source::{
+    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position, shaped,
+};
+use crate::noise2d::deviation;
 use mipless_codegen::NodeDef;
 use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
 
@@ -23,10 +25,10 @@ static SPEC: NodeSpec = NodeSpec {
         references: "Perlin 1985; Musgrave et al. 1989; Bruneton & Neyret 2012 §2.2.",
     },
     inputs: &[
-        TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
+        TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "smoke",
         "nodes": { "fractal2d": { "type": "fractal2d", "inputs": { "frequency": 4, "octaves": 5, "pivot": 0.5 } } },
         "outputs": { "out": { "node": "fractal2d" } } }"#,
@@ -36,7 +38,7 @@ static SPEC: NodeSpec = NodeSpec {
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
     lower: |lower, node| {
-        let octaves = octaves(lower, node);
+        let octaves = tiled_octaves(lower, node);
         let position = position(lower, node);
         let kernel = Kernel::of(lower, node);
         kernel.report(lower, &position);

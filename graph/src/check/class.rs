@@ -305,7 +305,9 @@ fn outcome(id: NodeId, node: &Node, behaviour: Behaviour, incoming: &[Incoming])
     let unknown = incoming.iter().find(|input| input.class == Class::Unknown);
     let components = u8::try_from(node.ty.components()).unwrap_or(4);
     match behaviour {
-        Behaviour::Unknown(reason) => Outcome::new(Class::Unknown, Reason::NoStatistics(reason)),
+        Behaviour::Unknown(reason) | Behaviour::Refused { reason, .. } => {
+            Outcome::new(Class::Unknown, Reason::NoStatistics(reason))
+        }
         _ if unknown.is_some() => {
             let (port, by) = unknown
                 .map(|input| (input.port, input.node))

@@ -3,7 +3,7 @@
 use super::field::Field;
 use mipless_codegen::Lower;
 use mipless_codegen::moments::Signal;
-use mipless_graph::{Default, Node, PortSpec, PortType, Range, Type};
+use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
 
 /// Where.
 pub(crate) const TEXCOORD: PortSpec = PortSpec::new(
@@ -51,6 +51,42 @@ pub(crate) const SEED: PortSpec = PortSpec::new(
 )
 .uniform()
 .range(Range::hard(i32::MIN as f32, i32::MAX as f32).with_soft(0.0, 100.0));
+
+/// Whether it tiles.
+pub(crate) const PERIOD: PortSpec = PortSpec::new(
+    "period",
+    PortType::Exactly(Type::Integer),
+    Default::Integer(0),
+    "After how many cells of the lattice the noise repeats in both directions; 0 for never.",
+)
+.uniform()
+.range(Range::hard(0.0, 65536.0).with_soft(0.0, 64.0))
+.unit("cells");
+
+/// The longest period of an octave, in its cells: lattice points are told apart as reals.
+const LONGEST: f64 = 1_048_576.0;
+
+/// The class of a sum of noises of a lattice, where each has the frequency of the one before times
+/// the lacunarity: with a period, all of them must repeat after whole cells.
+pub(crate) fn tiling(
+    inputs: &dyn InputView,
+    octaves: f32,
+    lacunarity: f32,
+    deviation: f32,
+) -> Behaviour {
+    let period = f64::from(inputs.number("period"));
+    let fits = (0..octaves as i32).all(|octave| {
+        let cells = period * f64::from(lacunarity).powi(octave);
+        cells.fract() == 0.0 && cells <= LONGEST
+    });
+    if fits {
+        return Behaviour::Gaussian { deviation };
+    }
+    Behaviour::Refused {
+        port: "period",
+        reason: "in every octave, period × lacunarityᵏ must be a whole number of cells, at most 2²⁰",
+    }
+}
 
 /// Of what shape.
 pub(crate) const KERNEL: PortSpec = PortSpec::new(

@@ -109,7 +109,8 @@ fn build(module: &mut Module, mode: Mode, waves: &[Wave]) -> FunctionRef {
         if mode.filters() {
             let factors = [w[0] * w[0], 2.0 * w[0] * w[1], w[1] * w[1]].map(|f| b.f32(f));
             let q = b.dot(&factors, &covariance);
-            let q = b.clamp(q, 0.0, 160.0);
+            // Beyond, nothing is left, and squares would have no normal numbers.
+            let q = b.clamp(q, 0.0, 60.0);
             let half = b.scale(q, -0.5);
             let damping = b.exp(half);
             cosine = b.mul(cosine, damping);

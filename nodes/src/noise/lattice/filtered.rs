@@ -14,9 +14,8 @@ const FADE: [f32; 2] = [0.0007, 0.0025];
 /// which on a fourth counts in full.
 const FOURTH: [f32; 2] = [0.0144, 0.04];
 
-/// Rows are summed up to this many times √T₂₂ from the position, and the second number more where
-/// nothing of the octave is lost.
-const REACH: [f32; 2] = [2.2, 0.8];
+/// Rows are summed up to this many times √T₂₂ from the position.
+const REACH: f32 = 2.35;
 
 /// How many derivatives of the noise a mode needs.
 pub(super) fn derivatives(mode: Mode) -> usize {
@@ -73,12 +72,8 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     let lean = b.mul(shear, s_xy);
     let across = b.sub(across, lean);
     let outer = [ramp(b, across, FOURTH), ramp(b, along, FOURTH)];
-    let left = b.max(energy.left, zero);
-    let amplitude = b.sqrt(left);
-    let reach = b.scale(amplitude, 2.0 * REACH[1]);
-    let reach = b.offset(reach, 2.0 * REACH[0]);
     let size = b.sqrt(t_yy);
-    let needed = b.mul(reach, size);
+    let needed = b.scale(size, 2.0 * REACH);
     let (three, four) = (b.f32(3.0), b.f32(4.0));
     let is_near = b.le(outer[1], zero);
     let least = b.select(is_near, three, four);
