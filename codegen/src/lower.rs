@@ -4,6 +4,7 @@
 //! A method that repeats the graph (`supersample`, `split`) is a fold over one function of it, and
 //! `auto` is a branch between two functions: nothing is ever unrolled.
 
+mod arguments;
 mod entry;
 mod fusion;
 mod map;
@@ -14,10 +15,10 @@ mod symbols;
 pub use method::{Method, ParseMethodError, PixelFilter};
 
 use crate::ir::{
-    Builder, FOOTPRINT, FunctionRef, Interface, Library, Module, POSITION, Port, Program,
-    Type as Scalar, Value,
+    Builder, FunctionRef, Interface, Library, Module, Port, Program, Type as Scalar, Value,
 };
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol};
+use arguments::Arguments;
 use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Literal, Node, NodeId, NodeSpec, Source, Stops, Type,
 };
@@ -174,55 +175,6 @@ struct Compiler<'a> {
     levels: Cell<Option<u32>>,
     /// The functions that all functions share.
     library: Library,
-}
-
-/// The parameters of an entry or of a function that stands for the graph.
-struct Arguments {
-    footprint: [Value; 8],
-    /// Where the graph reads the position in space.
-    position: Option<[Value; 12]>,
-    parameters: Vec<Value>,
-}
-
-impl Arguments {
-    fn declare(b: &mut Builder, graph: &Graph) -> Self {
-        let footprint = FOOTPRINT.map(|(name, ty)| b.param(name, ty));
-        let position =
-            symbols::reads_position(graph).then(|| POSITION.map(|(name, ty)| b.param(name, ty)));
-        let mut parameters = Vec::new();
-        for parameter in &graph.parameters {
-            let components = parameter.ty.components();
-            for i in 0..components {
-                let name = if components == 1 {
-                    identifier(&parameter.name)
-                } else {
-                    format!("{}_{i}", identifier(&parameter.name))
-                };
-                let ty = match parameter.ty {
-                    Type::Integer => Scalar::I32,
-                    Type::Boolean => Scalar::Bool,
-                    _ => Scalar::F32,
-                };
-                // Two names may meet in one identifier.
-                let name = format!("p{}_{name}", parameters.len());
-                parameters.push(b.param(name, ty));
-            }
-        }
-        Self {
-            footprint,
-            position,
-            parameters,
-        }
-    }
-
-    fn all(&self) -> Vec<Value> {
-        self.footprint
-            .iter()
-            .chain(self.position.iter().flatten())
-            .chain(&self.parameters)
-            .copied()
-            .collect()
-    }
 }
 
 /// A coordinate of the surface: its mean carried as a cell and a fraction in [0, 1), and its

@@ -15,6 +15,8 @@ mod cost;
 mod footprint;
 #[path = "sources/gabor.rs"]
 mod gabor;
+#[path = "sources/perlin.rs"]
+mod perlin;
 #[path = "sources/spectral.rs"]
 mod spectral;
 #[path = "sources/table.rs"]
@@ -23,7 +25,11 @@ mod table;
 mod truth;
 
 /// The families, by the names that the command line takes.
-const FAMILIES: [(&str, fn()); 2] = [("spectral", spectral::run), ("gabor", gabor::run)];
+const FAMILIES: [(&str, fn()); 3] = [
+    ("spectral", spectral::run),
+    ("gabor", gabor::run),
+    ("perlin", perlin::run),
+];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
