@@ -4,6 +4,7 @@
 //! A method that repeats the graph (`supersample`, `split`) is a fold over one function of it, and
 //! `auto` is a branch between two functions: nothing is ever unrolled.
 
+mod arguments;
 mod entry;
 mod fusion;
 mod input;
@@ -16,11 +17,9 @@ mod table;
 
 pub use method::{Method, ParseMethodError, PixelFilter};
 
-use crate::ir::{
-    Builder, FOOTPRINT, FunctionRef, Interface, Library, Module, POSITION, Port, Program,
-    Type as Scalar, Value,
-};
+use crate::ir::{Builder, FunctionRef, Interface, Library, Module, Port, Program, Value};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
+use arguments::Arguments;
 use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Source, Type};
 use rustc_hash::FxHashMap;
 use std::any::Any;
@@ -189,55 +188,6 @@ struct Compiler<'a> {
     levels: Cell<Option<u32>>,
     /// The functions that all functions share.
     library: Library,
-}
-
-/// The parameters of an entry or of a function that stands for the graph.
-struct Arguments {
-    footprint: [Value; 8],
-    /// Where the graph reads the position in space.
-    position: Option<[Value; 12]>,
-    parameters: Vec<Value>,
-}
-
-impl Arguments {
-    fn declare(b: &mut Builder, graph: &Graph) -> Self {
-        let footprint = FOOTPRINT.map(|(name, ty)| b.param(name, ty));
-        let position =
-            symbols::reads_position(graph).then(|| POSITION.map(|(name, ty)| b.param(name, ty)));
-        let mut parameters = Vec::new();
-        for parameter in &graph.parameters {
-            let components = parameter.ty.components();
-            for i in 0..components {
-                let name = if components == 1 {
-                    identifier(&parameter.name)
-                } else {
-                    format!("{}_{i}", identifier(&parameter.name))
-                };
-                let ty = match parameter.ty {
-                    Type::Integer => Scalar::I32,
-                    Type::Boolean => Scalar::Bool,
-                    _ => Scalar::F32,
-                };
-                // Two names may meet in one identifier.
-                let name = format!("p{}_{name}", parameters.len());
-                parameters.push(b.param(name, ty));
-            }
-        }
-        Self {
-            footprint,
-            position,
-            parameters,
-        }
-    }
-
-    fn all(&self) -> Vec<Value> {
-        self.footprint
-            .iter()
-            .chain(self.position.iter().flatten())
-            .chain(&self.parameters)
-            .copied()
-            .collect()
-    }
 }
 
 /// The state of the lowering of one function of the graph; what nodes build through.

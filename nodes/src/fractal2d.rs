@@ -1,10 +1,9 @@
 //! `fractal2d`: a sum of octaves of lattice noise.
 
 use crate::noise::kernel::Kernel;
-use crate::noise::lattice::Octaves;
-use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
 use crate::noise::source::{
-    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position, shaped, tiling,
+    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position, shaped,
 };
 use crate::noise2d::deviation;
 use mipless_codegen::NodeDef;
@@ -29,10 +28,7 @@ static SPEC: NodeSpec = NodeSpec {
         TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |inputs| {
-        let (octaves, lacunarity) = (inputs.number("octaves"), inputs.number("lacunarity"));
-        tiling(inputs, octaves, lacunarity, deviation(inputs))
-    },
+    class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "smoke",
         "nodes": { "fractal2d": { "type": "fractal2d", "inputs": { "frequency": 4, "octaves": 5, "pivot": 0.5 } } },
         "outputs": { "out": { "node": "fractal2d" } } }"#,
@@ -42,10 +38,7 @@ static SPEC: NodeSpec = NodeSpec {
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
     lower: |lower, node| {
-        let octaves = Octaves {
-            period: lower.integer(node, "period").max(0) as u32,
-            ..octaves(lower, node)
-        };
+        let octaves = tiled_octaves(lower, node);
         let position = position(lower, node);
         let kernel = Kernel::of(lower, node);
         kernel.report(lower, &position);

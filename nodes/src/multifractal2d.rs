@@ -1,12 +1,12 @@
 //! `multifractal2d`: a product of octaves.
 
 use crate::noise::layers::{layers, published};
-use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES};
-use crate::noise::source::{FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position};
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating};
+use crate::noise::source::{FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position};
 use mipless_codegen::NodeDef;
 use mipless_codegen::moments::Signal;
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 /// max |CDF − Φ| of three octaves with the default ports.
@@ -48,6 +48,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.0, 4.0)),
         PIVOT,
         SEED,
+        PERIOD,
         KERNEL,
         OCTAVES,
         LACUNARITY,
@@ -61,9 +62,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.0, 2.0)),
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian {
-        deviation: DEVIATION,
-    },
+    class: |inputs| repeating(inputs, DEVIATION),
     example: r#"{ "version": 1, "name": "hills",
         "nodes": { "multifractal2d": { "type": "multifractal2d", "inputs": { "frequency": 4, "octaves": 5, "amplitude": 0.5 } } },
         "outputs": { "out": { "node": "multifractal2d" } } }"#,

@@ -51,11 +51,11 @@ static SPEC: NodeSpec = NodeSpec {
             a third of a cell 0.83 to 1.36, by half a cell 0.96 to 1.09. Cost, in kernels: 3×3 \
             unfiltered; filtered, four columns across the footprint's longer side by three rows up \
             to 0.12 cells, four up to 0.78, then 4.6 √(0.149 + σ²) up to 32, none once it has \
-            faded (1.24 cells, if round). \
-            `quintic`: the window is 0.029 standard deviations from \
-            w; filtered mean within 0.03 at any round footprint and within 0.06 at 8:1, at any \
+            faded (1.24 cells, if round). `quintic`: the window is 0.029 standard deviations from \
+            w; filtered mean within 0.035 at any round footprint and within 0.06 at 8:1, at any \
             angle (`nodes/tests/perlin.rs`); its remainder is that of random lattices, while the \
-            noise is 0 at every lattice point.",
+            noise is 0 at every lattice point; 2×2 kernels up to 0.1 cells, then from 3×3 on, each \
+            about twice as dear.",
         references: "Perlin 1985 (lattice noise); Perlin 2002, *Improving Noise* (the quintic \
             fade); MaterialX 1.39 specification, node `noise2d`; Bruneton & Neyret 2012 §2.2; Hermite–Parseval \
             identity for the remainder.",

@@ -1,13 +1,13 @@
 //! `ridged2d`: Musgrave's ridged multifractal.
 
 use crate::noise::layers::{layers, published};
-use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES};
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating};
 use crate::noise::ridge::{Ridge, couple, settle};
-use crate::noise::source::{FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position};
+use crate::noise::source::{FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position};
 use mipless_codegen::NodeDef;
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 /// max |CDF − Φ| of three octaves with the default ports.
@@ -53,6 +53,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.0, 4.0)),
         PIVOT,
         SEED,
+        PERIOD,
         KERNEL,
         OCTAVES,
         LACUNARITY,
@@ -74,9 +75,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.0, 8.0)),
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian {
-        deviation: DEVIATION,
-    },
+    class: |inputs| repeating(inputs, DEVIATION),
     example: r#"{ "version": 1, "name": "ridges",
         "nodes": { "ridged2d": { "type": "ridged2d", "inputs": { "frequency": 4, "octaves": 4, "amplitude": 0.7 } } },
         "outputs": { "out": { "node": "ridged2d" } } }"#,

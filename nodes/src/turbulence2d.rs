@@ -1,11 +1,11 @@
 //! `turbulence2d`: a sum of magnitudes of octaves.
 
 use crate::noise::layers::{layers, published};
-use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES};
-use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PIVOT, SEED, TEXCOORD, position};
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating};
+use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position};
 use mipless_codegen::NodeDef;
 use mipless_codegen::moments::{Piecewise, Signal};
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Type};
+use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
 
 /// max |CDF − Φ| of three octaves.
 const DEVIATION: f32 = 0.06;
@@ -30,12 +30,10 @@ static SPEC: NodeSpec = NodeSpec {
             scale: 2|n| − 1.",
     },
     inputs: &[
-        TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
+        TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian {
-        deviation: DEVIATION,
-    },
+    class: |inputs| repeating(inputs, DEVIATION),
     example: r#"{ "version": 1, "name": "billows",
         "nodes": { "turbulence2d": { "type": "turbulence2d", "inputs": { "frequency": 4, "octaves": 4.5 } } },
         "outputs": { "out": { "node": "turbulence2d" } } }"#,

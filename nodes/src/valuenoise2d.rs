@@ -4,10 +4,10 @@ use crate::noise::kernel::Kernel;
 use crate::noise::lattice::Octaves;
 use crate::noise::perlin::Kind;
 
-use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position, scaled};
+use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, position, scaled, tiling};
 use mipless_codegen::NodeDef;
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 /// max |CDF − Φ|, measured over 4·10⁶ independent points.
@@ -62,11 +62,10 @@ static SPEC: NodeSpec = NodeSpec {
         )
         .range(Range::soft(-1.0, 1.0)),
         SEED,
+        PERIOD,
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian {
-        deviation: DEVIATION,
-    },
+    class: |inputs| tiling(inputs, 1.0, 1.0, DEVIATION),
     example: r#"{ "version": 1, "name": "patches",
         "nodes": { "valuenoise2d": { "type": "valuenoise2d", "inputs": { "frequency": 8 } } },
         "outputs": { "out": { "node": "valuenoise2d" } } }"#,
@@ -82,7 +81,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
             lacunarity: 2.0,
             diminish: 1.0,
             seed: lower.integer(node, "seed"),
-            period: 0,
+            period: lower.integer(node, "period").max(0) as u32,
         };
         let position = position(lower, node);
         let kernel = Kernel::Quintic(Kind::Value);

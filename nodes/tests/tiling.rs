@@ -55,6 +55,19 @@ fn a_period_repeats_to_the_bit() {
         (r#"{"type":"noise2d","inputs":{"period":1}}"#, 1),
         (r#"{"type":"noise2d","inputs":{"period":5}}"#, 5),
         (
+            r#"{"type":"noise2d","inputs":{"period":1,"kernel":"quintic"}}"#,
+            1,
+        ),
+        (
+            r#"{"type":"fractal2d","inputs":{"period":5,"kernel":"quintic","octaves":2.5}}"#,
+            5,
+        ),
+        (r#"{"type":"valuenoise2d","inputs":{"period":7}}"#, 7),
+        (
+            r#"{"type":"turbulence2d","inputs":{"period":3,"octaves":2}}"#,
+            3,
+        ),
+        (
             r#"{"type":"fractal2d","inputs":{"period":3,"octaves":4}}"#,
             3,
         ),

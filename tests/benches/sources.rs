@@ -17,6 +17,8 @@ mod cost;
 mod footprint;
 #[path = "sources/gabor.rs"]
 mod gabor;
+#[path = "sources/perlin.rs"]
+mod perlin;
 #[path = "sources/phasor.rs"]
 mod phasor;
 #[path = "sources/spectral.rs"]
@@ -27,10 +29,11 @@ mod table;
 mod truth;
 
 /// The families, by the names that the command line takes.
-const FAMILIES: [(&str, fn()); 4] = [
+const FAMILIES: [(&str, fn()); 5] = [
     ("cells", cells::run),
     ("spectral", spectral::run),
     ("gabor", gabor::run),
+    ("perlin", perlin::run),
     ("phasor", phasor::run),
 ];
 

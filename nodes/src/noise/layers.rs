@@ -2,7 +2,7 @@
 
 use super::kernel::Kernel;
 use super::lattice::Octaves;
-use super::octaves::octaves;
+use super::octaves::tiled_octaves;
 use super::source::EXTENT;
 use mipless_codegen::Lower;
 use mipless_codegen::moments::Signal;
@@ -25,14 +25,16 @@ pub(crate) struct Layer {
 pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) -> Vec<Layer> {
     let kernel = Kernel::of(lower, node);
     kernel.report(lower, &position);
-    let octaves = octaves(lower, node);
+    let octaves = tiled_octaves(lower, node);
     let shares = std::mem::replace(&mut lower.algebra.shares, false);
     let mut position = position;
+    let mut period = octaves.period as f32;
     let mut layers = Vec::new();
     for k in 0..octaves.count + u32::from(octaves.part > 0.0) {
         let one = Octaves {
             count: 1,
             part: 0.0,
+            period: period.round() as u32,
             seed: octaves
                 .seed
                 .wrapping_add(k.wrapping_mul(0x9e37_79b9) as i32),
@@ -44,6 +46,7 @@ pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) 
             amplitude: octaves.diminish.powi(k as i32),
             share: if k < octaves.count { 1.0 } else { octaves.part },
         });
+        period *= octaves.lacunarity;
         let b = lower.b();
         let lacunarity = b.f32(octaves.lacunarity);
         // Octaves must not share lattice points, where the variance of all is largest.

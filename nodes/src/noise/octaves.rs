@@ -1,8 +1,9 @@
 //! The ports of noises that are made of octaves.
 
 use super::lattice::Octaves;
+use super::source::tiling;
 use mipless_codegen::Lower;
-use mipless_graph::{Default, Node, PortSpec, PortType, Range, Type};
+use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
 
 /// How many.
 pub(crate) const OCTAVES: PortSpec = PortSpec::new(
@@ -34,6 +35,20 @@ pub(crate) const DIMINISH: PortSpec = PortSpec::new(
 )
 .uniform()
 .range(Range::hard(0.0, 2.0).with_soft(0.0, 1.0));
+
+/// The class of octaves on lattices that may tile.
+pub(crate) fn repeating(inputs: &dyn InputView, deviation: f32) -> Behaviour {
+    let (octaves, lacunarity) = (inputs.number("octaves"), inputs.number("lacunarity"));
+    tiling(inputs, octaves.ceil(), lacunarity, deviation)
+}
+
+/// The octaves that a node's ports ask for, with its `period`.
+pub(crate) fn tiled_octaves(lower: &Lower<'_>, node: &Node) -> Octaves {
+    Octaves {
+        period: lower.integer(node, "period").max(0) as u32,
+        ..octaves(lower, node)
+    }
+}
 
 /// The octaves that a node's ports ask for.
 pub(crate) fn octaves(lower: &Lower<'_>, node: &Node) -> Octaves {

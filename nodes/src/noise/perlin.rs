@@ -92,7 +92,7 @@ impl Kind {
     pub(super) const fn wavelength(self) -> f32 {
         match self {
             Self::Gradient => 1.70,
-            Self::Value => 3.14,
+            Self::Value => 3.144,
         }
     }
 

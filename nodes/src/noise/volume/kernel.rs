@@ -7,9 +7,17 @@ use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 /// What a step along x, y and z adds to the key of a lattice point.
 pub(super) const STEPS: [u32; 3] = [0x9e37_79b1, 0x27d4_eb2f, 0x1656_67b1];
 
-/// The random direction of a lattice point, a uniform height and a uniform angle, and a random
-/// sign, without which the noise would not be symmetric.
-fn normal(b: &mut Builder, key: Value) -> ([Value; 3], Value) {
+/// What is random at a lattice point: B = ±(nnᵀ − |n|²I/3).
+struct Turn {
+    /// n, a uniform height and a uniform angle: a unit vector to within 1.1e-3.
+    n: [Value; 3],
+    /// |n|²/3, which leaves B no trace.
+    third: Value,
+    /// ±1, without which the noise would not be symmetric.
+    sign: Value,
+}
+
+fn turn(b: &mut Builder, key: Value) -> Turn {
     let hash = b.scramble(key);
     let [cos, sin] = direction(b, hash);
     // The angle comes from the leading bits, the height from the others.
@@ -28,7 +36,10 @@ fn normal(b: &mut Builder, key: Value) -> ([Value; 3], Value) {
     let is_clear = b.eq_u(bit, none);
     let (plus, minus) = (b.f32(1.0), b.f32(-1.0));
     let sign = b.select(is_clear, plus, minus);
-    ([b.mul(ring, cos), b.mul(ring, sin), height], sign)
+    let n = [b.mul(ring, cos), b.mul(ring, sin), height];
+    let square = b.dot(&n, &n);
+    let third = b.scale(square, 1.0 / 3.0);
+    Turn { n, third, sign }
 }
 
 /// The key of the lattice point `offset` (a real) steps along an axis.
@@ -40,7 +51,7 @@ pub(super) fn stepped(b: &mut Builder, key: Value, axis: usize, offset: Value) -
     b.add_u(key, walked)
 }
 
-/// Three unfiltered kernels of a row, the body of a fold over rows: E (n·d)² − E d·d/3. Offsets are
+/// Three unfiltered kernels of a row, the body of a fold over rows: E d·Bd. Offsets are
 /// in kernel widths, `width` to a cell.
 pub(super) fn point_row(module: &mut Module, width: f32) -> FunctionRef {
     let doc = "The unfiltered kernels of one lattice row in space.";
@@ -66,13 +77,13 @@ pub(super) fn point_row(module: &mut Module, width: f32) -> FunctionRef {
     for (i, [dx, e]) in columns.into_iter().enumerate() {
         let step = b.u32(STEPS[0].wrapping_mul(i as u32));
         let key = b.add_u(key, step);
-        let (n, sign) = normal(b, key);
+        let Turn { n, third, sign } = turn(b, key);
         let along = b.dot(&n, &[dx, dy, dz]);
         let k = b.square(along);
         let square = b.square(dx);
         let whole = b.add(square, flat);
-        let third = b.scale(whole, 1.0 / 3.0);
-        let k = b.sub(k, third);
+        let whole = b.mul(whole, third);
+        let k = b.sub(k, whole);
         let part = b.mul(e, k);
         let part = b.mul(sign, part);
         row = b.add(row, part);
@@ -109,7 +120,7 @@ pub(super) fn point_slice(module: &mut Module, width: f32) -> FunctionRef {
     builder.finish(module)
 }
 
-/// What every kernel of an octave needs of the footprint: P, tr P/3, I + S.
+/// What every kernel of an octave needs of the footprint: P, tr P, I + S.
 pub(super) const SHAPE: usize = 13;
 
 fn shape(b: &mut Builder) -> Vec<Value> {
@@ -117,7 +128,7 @@ fn shape(b: &mut Builder) -> Vec<Value> {
     let mut all: Vec<Value> = (names.iter())
         .map(|name| b.param_f32(format!("p_{name}")))
         .collect();
-    all.push(b.param_f32("third"));
+    all.push(b.param_f32("trace"));
     all.extend(names.iter().map(|name| b.param_f32(format!("t_{name}"))));
     assert_eq!(all.len(), SHAPE, "numbers of a shape");
     all
@@ -141,12 +152,12 @@ fn kernel(module: &mut Module, parts: usize, width: f32) -> FunctionRef {
     let (first, dy, dz) = (b.param_f32("x"), b.param_f32("dy"), b.param_f32("dz"));
     let key = b.param("key", Type::U32);
     let shape = shape(b);
-    let (p, third, t) = (&shape[..6], shape[6], &shape[7..]);
+    let (p, trace, t) = (&shape[..6], shape[6], &shape[7..]);
     let number = b.float_u(index);
     let key = stepped(b, key, 0, number);
     let number = b.scale(number, 1.0 / width);
     let d = [b.sub(first, number), dy, dz];
-    let (n, sign) = normal(b, key);
+    let Turn { n, third, sign } = turn(b, key);
     let row = |i: usize| [0, 1, 2].map(|j| p[place(i, j)]);
     let u = [0, 1, 2].map(|i| b.dot(&row(i), &d));
     let distance = b.dot(&d, &u);
@@ -155,18 +166,19 @@ fn kernel(module: &mut Module, parts: usize, width: f32) -> FunctionRef {
     let exponent = b.max(exponent, least);
     let envelope = b.exp(exponent);
     let envelope = b.mul(sign, envelope);
-    // Bu, and k = u·Bu − nᵀPn + tr P/3.
+    // Bu, and k = u·Bu − nᵀPn + |n|² tr P/3.
     let along = b.dot(&n, &u);
     let bu = [0, 1, 2].map(|i| {
         let outer = b.mul(n[i], along);
-        let part = b.scale(u[i], 1.0 / 3.0);
+        let part = b.mul(u[i], third);
         b.sub(outer, part)
     });
     let k = b.dot(&u, &bu);
     let pn = [0, 1, 2].map(|i| b.dot(&row(i), &n));
-    let trace = b.dot(&n, &pn);
-    let k = b.sub(k, trace);
-    let k = b.add(k, third);
+    let inner = b.dot(&n, &pn);
+    let k = b.sub(k, inner);
+    let whole = b.mul(third, trace);
+    let k = b.add(k, whole);
     let mut all = vec![k];
     if parts > 1 {
         // 2Bu − k d.
@@ -180,11 +192,7 @@ fn kernel(module: &mut Module, parts: usize, width: f32) -> FunctionRef {
         // 2B − 2(Bu dᵀ + d Buᵀ) + k (d dᵀ − I − S).
         for (at, [i, j]) in PAIRS.into_iter().enumerate() {
             let turn = b.mul(n[i], n[j]);
-            let turn = if i == j {
-                b.offset(turn, -1.0 / 3.0)
-            } else {
-                turn
-            };
+            let turn = if i == j { b.sub(turn, third) } else { turn };
             let outer = b.dot(&[bu[i], d[i]], &[d[j], bu[j]]);
             let part = b.sub(turn, outer);
             let part = b.add(part, part);

@@ -197,7 +197,7 @@ pub(super) fn filtered(module: &mut Module, mode: Mode, octaves: Octaves) -> Fun
     captures.extend(leans);
     captures.extend([x, y, dz, key]);
     captures.extend(energy.inverse);
-    captures.push(b.scale(energy.trace, 1.0 / 3.0));
+    captures.push(energy.trace);
     captures.extend(t);
     let kernels = b.fold(&slice, turns, &vec![zero; parts], &captures);
 
