@@ -21,6 +21,9 @@ pub(crate) const NAMES: [&str; 6] = ["measure", "dx", "dy", "dxx", "dxy", "dyy"]
 /// No footprint is narrower than this, in units of the position.
 const NARROWEST: f32 = 1e-6;
 
+/// The same for discs: chords are placed to 3e-8, which must be little against the footprint.
+const NARROWEST_DISC: f32 = 1e-5;
+
 /// Σ = LLᵀ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Whitening {
@@ -411,7 +414,7 @@ pub(crate) fn disc_function(module: &mut Module) -> FunctionRef {
     let minus = b.neg(s);
     let (u, v) = (b.dot(&[c, s], &[x, y]), b.dot(&[minus, c], &[x, y]));
     let [major, minor] = [more, less].map(|v| {
-        let v = b.offset(v, NARROWEST * NARROWEST);
+        let v = b.offset(v, NARROWEST_DISC * NARROWEST_DISC);
         b.sqrt(v)
     });
     let [inverse_x, inverse_y] = [major, minor].map(|sd| b.div(one, sd));

@@ -55,12 +55,23 @@ impl Transfer for Sawtooth {
         let square = b.square(densities);
         let distortion = b.sub(sum, square);
         let zero = b.f32(0.0);
+        let distortion = b.max(distortion, zero);
+        // An angle whose variance is that of a uniform number is uniform: its mean is ½.
+        let kept = b.scale(x.variance, -48.0);
+        let kept = b.offset(kept, 4.0);
+        let kept = b.clamp(kept, 0.0, 1.0);
+        let centred = b.offset(mean, -0.5);
+        let centred = b.mul(centred, kept);
+        let faded = b.mul(slope, kept);
+        let (before, after) = (b.square(slope), b.square(faded));
+        let lost = b.sub(before, after);
+        let lost = b.mul(lost, x.variance);
         Moments {
-            mean,
-            slope,
-            curvature,
-            third,
-            distortion: b.max(distortion, zero),
+            mean: b.offset(centred, 0.5),
+            slope: faded,
+            curvature: b.mul(curvature, kept),
+            third: b.mul(third, kept),
+            distortion: b.add(distortion, lost),
         }
     }
 

@@ -58,6 +58,9 @@ impl Term {
     }
 }
 
+/// A constant and terms whose sum is a function on the unit cell, from parameters.
+pub(crate) type Terms<'a> = &'a dyn Fn(&mut Builder, &[Value]) -> (f32, Vec<Term>);
+
 /// A pattern with values in [0, 1].
 pub(crate) struct Pattern<'a> {
     /// Names what the terms depend on beyond the parameters.
@@ -65,7 +68,7 @@ pub(crate) struct Pattern<'a> {
     /// The numbers that shape the pulses.
     pub(crate) parameters: Vec<Value>,
     /// A constant and terms of the unit cell, from the parameters.
-    pub(crate) terms: &'a dyn Fn(&mut Builder, &[Value]) -> (f32, Vec<Term>),
+    pub(crate) terms: Terms<'a>,
     /// The terms of the square of the pattern, where edges are ramps, and the width of the ramps in
     /// units of each coordinate.
     pub(crate) soft: Option<Soft<'a>>,
@@ -74,7 +77,7 @@ pub(crate) struct Pattern<'a> {
 /// What a pattern with ramps says of itself.
 pub(crate) struct Soft<'a> {
     /// A constant and terms whose sum has the mean of the pattern's square.
-    pub(crate) squares: &'a dyn Fn(&mut Builder, &[Value]) -> (f32, Vec<Term>),
+    pub(crate) squares: Terms<'a>,
     /// The width of the ramps along each coordinate.
     pub(crate) width: [Value; 2],
 }
