@@ -159,12 +159,12 @@ fn main() {
                 format!("{:.1}", 1e3 * mean.sqrt())
             })
             .collect();
-        println!(
-            "| {} | {} | {} |",
-            chain.name,
-            chain.fusion,
-            totals.join(" | ")
-        );
+        let fusion = if chain.fusion.is_nan() {
+            "–".to_owned()
+        } else {
+            chain.fusion.to_string()
+        };
+        println!("| {} | {fusion} | {} |", chain.name, totals.join(" | "));
         if arguments.iter().any(|argument| argument == "--sizes") {
             for size in SIZES {
                 let of_size = |i: usize| {

@@ -1,6 +1,6 @@
 //! The noise ladder: one noise through one map, footprints from 0.01 to 0.8 wavelengths.
 //!
-//! `cargo bench -p mipless-tests --bench ladder` prints Markdown: the RMS error of each method over
+//! `cargo bench -p mipless-tests --bench ladder [-- MAP…]` prints Markdown: the RMS error of each method over
 //! the footprints and three seeds, in thousandths of the map's range, against 4096 samples a pixel.
 
 use mipless::{Footprint, Method, Options, PixelFilter, Texture};
@@ -25,11 +25,16 @@ const METHODS: [Method; 8] = [
 ];
 
 /// Name, the map's node `o` (with what it needs) over the noise `n`, and its range.
-const MAPS: [(&str, &str, f32); 5] = [
+const MAPS: [(&str, &str, f32); 6] = [
     (
         "smooth: ½ + ½ sin 2x",
         r#""s":{"type":"multiply","inputs":{"in1":{"node":"n"},"in2":2}},"o":{"type":"sin","inputs":{"in":{"node":"s"}}}"#,
         2.0,
+    ),
+    (
+        "smoothstep from −2 to 2",
+        r#""o":{"type":"smoothstep","inputs":{"in":{"node":"n"},"low":-2,"high":2}}"#,
+        1.0,
     ),
     (
         "ramp",
@@ -54,14 +59,19 @@ const MAPS: [(&str, &str, f32); 5] = [
 ];
 
 fn main() {
-    if std::env::args().any(|argument| argument == "--test") {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().any(|argument| argument == "--test") {
         return;
     }
+    let wanted = |name: &str| {
+        let mut names = arguments.iter().filter(|a| !a.starts_with("--")).peekable();
+        names.peek().is_none() || names.any(|part| name.contains(part.as_str()))
+    };
     let heads: Vec<String> = METHODS.iter().map(ToString::to_string).collect();
     println!("| noise | map | {} |", heads.join(" | "));
     println!("|---|---|{}", "---|".repeat(METHODS.len()));
     for (source, frequency) in [("spectralnoise2d", 1.0), ("noise2d", 1.53)] {
-        for (name, map, range) in MAPS {
+        for (name, map, range) in MAPS.into_iter().filter(|map| wanted(map.0)) {
             let textures = SEEDS.map(|seed| {
                 Texture::from_json(&format!(
                     r#"{{"version":1,"name":"ladder","nodes":{{"n":{{"type":"{source}","inputs":{{"amplitude":4,"frequency":{frequency},"seed":{seed}}}}},{map}}},"outputs":{{"out":{{"node":"o"}}}}}}"#

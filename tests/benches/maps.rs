@@ -115,6 +115,9 @@ fn catalogue() -> Vec<NodeDef> {
     all
 }
 
+/// Writes the nodes of a map of this seed.
+type MakeMap = fn(u32) -> String;
+
 /// A graph that ends in the colour `o`.
 fn program(nodes: &str, method: Method) -> Program {
     let catalogue = catalogue();
@@ -353,7 +356,7 @@ fn tables() {
     println!("| maps | Gaussians | pyramid and five taps | 36 maps |");
     println!("|---|---|---|---|");
     let mut bytes = 0;
-    let kinds: [(&str, fn(u32) -> String); 2] = [
+    let kinds: [(&str, MakeMap); 2] = [
         ("Voronoi", |seed| regions(seed, "periodic")),
         ("smooth", smooth),
     ];
@@ -413,7 +416,7 @@ fn noises() {
         heads.join(" | ")
     );
     println!("|---|---|{}", "---|".repeat(METHODS.len()));
-    let kinds: [(&str, fn(u32) -> String); 2] = [
+    let kinds: [(&str, MakeMap); 2] = [
         ("Voronoi", |seed| regions(seed, "clamp")),
         ("smooth", smooth),
     ];

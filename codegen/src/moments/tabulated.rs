@@ -409,15 +409,17 @@ impl Transfer for Tabulated {
 mod tests {
     use super::*;
 
+    type Function = fn(f64) -> f64;
+
     #[test]
     fn a_pyramid_states_its_error_and_stays_small() {
-        let values = |f: fn(f64) -> f64| -> Vec<f64> {
+        let values = |f: Function| -> Vec<f64> {
             (0..SAMPLES)
                 .map(|i| f((i as f64 + 0.5) / SAMPLES as f64))
                 .collect()
         };
         // MATH §6 has 0.011 for sin 9x and 0.014 for ten stripes; nine whole periods are harder.
-        let cases: [(fn(f64) -> f64, f64); 3] = [
+        let cases: [(Function, f64); 3] = [
             (|x| 0.5 + 0.5 * (9.0 * x).sin(), 0.02),
             (|x| (10.0 * x).floor().rem_euclid(2.0), 0.1),
             (
