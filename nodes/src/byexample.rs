@@ -81,7 +81,7 @@ static SPEC: NodeSpec = NodeSpec {
     output: OutputType::Named("signature"),
     class: |_| Behaviour::Gaussian { deviation: 0.1 },
     example: r#"{ "version": 1, "name": "granite_floor",
-        "nodes": { "byexample": { "type": "byexample", "inputs": { "file": "images/granite.png", "uvtiling": [4, 4], "seed": 3 } } },
+        "nodes": { "byexample": { "type": "byexample", "inputs": { "file": "images/granite.png", "uvtiling": [2, 2], "seed": 3 } } },
         "outputs": { "out": { "node": "byexample" } } }"#,
 };
 
