@@ -24,7 +24,7 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For footprints along the axes of the lattice up to 3 cells exact but for the window: \
             the mean is within 0.008 standard deviations of the noise (of which the truth has a part), \
             and the local standard deviation within 0.006; for rotated 8:1 footprints within 0.022 and \
-            0.012. Where it fades, at 3 to 4 cells, the mean loses up to 0.09. Held by `nodes/tests/sources.rs`; all sizes in \
+            0.012. Where it fades, beyond 3 cells along an axis, the mean loses up to 0.15. Held by `nodes/tests/sources.rs`; all sizes in \
             `tests/benches/sources.rs`.",
         references: "MaterialX 1.39 specification, node `cellnoise2d`; Heckbert 1989, *Fundamentals of \
             Texture Mapping and Image Warping*, §3.5.8 (Gaussian footprints); Johnson & Kotz, \

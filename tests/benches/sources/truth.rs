@@ -82,7 +82,8 @@ pub(crate) fn truth(
                 square += weight * deviation * (x - mean);
             }
         }
-        [mean, square / total]
+        // Of a constant, rounding may leave less than nothing.
+        [mean, (square / total).max(0.0)]
     };
     places.par_iter().map(over).collect()
 }
