@@ -97,11 +97,14 @@ fn by_fastnoise() -> impl FnMut() {
     }
 }
 
+/// A library, and what it does in one turn.
+type Rival = (&'static str, Box<dyn FnMut()>);
+
 fn main() {
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
-    let mut rivals: [(&str, Box<dyn FnMut()>); 3] = [
+    let mut rivals: [Rival; 3] = [
         ("mipless", Box::new(ours())),
         ("noise", Box::new(by_noise())),
         ("fastnoise-lite", Box::new(by_fastnoise())),

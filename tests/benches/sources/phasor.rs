@@ -5,7 +5,12 @@ use crate::table::{Source, Target, graph, print};
 
 pub(crate) fn run() {
     for (name, profile, sd, finest) in [
-        ("phasornoise2d, sine", "sine", std::f64::consts::FRAC_1_SQRT_2, 0.25),
+        (
+            "phasornoise2d, sine",
+            "sine",
+            std::f64::consts::FRAC_1_SQRT_2,
+            0.25,
+        ),
         ("phasornoise2d, sawtooth", "sawtooth", 0.577_350_3, 0.1),
     ] {
         print(&Source {
