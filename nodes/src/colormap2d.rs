@@ -136,7 +136,7 @@ static SPEC: NodeSpec = NodeSpec {
         "in1": { "node": "folds" }, "in2": { "node": "grain" },
         "shape": "regions", "count": 12, "interpolation": "linear",
         "stops": [
-          { "at": 0, "value": "#22333b" }, { "at": 0.5, "value": "#c6ac8f" }, { "at": 1, "value": "#f2f4f3" }
+          { "at": 0, "value": "#7d6b57" }, { "at": 0.5, "value": "#a89078" }, { "at": 1, "value": "#c9bca6" }
         ] } }
   },
   "outputs": { "out": { "node": "colormap2d" } }
