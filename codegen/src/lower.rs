@@ -182,8 +182,8 @@ struct Compiler<'a> {
     tabulated: RefCell<FxHashMap<String, Tabulated>>,
     /// The functions of two signals, by their keys.
     maps: RefCell<FxHashMap<String, Map>>,
-    /// Whether regions of two signals are worth a map, by the node that they end in.
-    gains: RefCell<FxHashMap<usize, bool>>,
+    /// Whether regions of two signals are worth a map, by their shapes.
+    gains: RefCell<FxHashMap<u64, bool>>,
     /// The table of levels that pyramids share, once there is one.
     levels: Cell<Option<u32>>,
     /// The functions that all functions share.

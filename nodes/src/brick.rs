@@ -37,8 +37,9 @@ static SPEC: NodeSpec = NodeSpec {
             each brick holds, and fade to their mean, 1/2, where the footprint covers many unit \
             cells: from 0.5 cells of √det Σ, or 1.1 cells along a coordinate after the shared part. Of varying parameters the means are used.",
         accuracy: "The mean is within 1e-5 for footprints along the axes and within 2e-3 for rotated \
-            ones up to 10:1; longer ones are blurred across to 10:1. Random numbers are within 0.02 \
-            until they fade, and then within 0.05. With a bevel the standard \
+            ones up to 10:1; longer ones are blurred across to 10:1. Random numbers are within 1e-3 \
+            under round footprints and 0.065 under rotated ones of 8:1 until they fade, and then within \
+            0.06. With a bevel the standard \
             deviation is within 0.03. Held by `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
             Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. Names of \

@@ -16,6 +16,8 @@ use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
 use mipless_graph::{Node, NodeId, Source};
+use rustc_hash::{FxHashMap, FxHasher};
+use std::hash::{Hash, Hasher};
 use std::rc::Rc;
 use std::sync::{Arc, LazyLock};
 
@@ -23,7 +25,7 @@ use std::sync::{Arc, LazyLock};
 const LONGEST: u32 = 12;
 /// How far, relative to the region's values, the closed form may be off.
 const TOLERANCE: f32 = 0.02;
-/// How many regions of one graph are measured: a graph of 10,000 nodes stays quick.
+/// How many shapes of regions of one graph are measured: a graph of 10,000 nodes stays quick.
 const MEASURED: usize = 48;
 /// A range is this many standard deviations of a noise.
 const DEVIATIONS: f32 = 10.0;
@@ -115,11 +117,12 @@ impl Lower<'_> {
             return None;
         }
         let compiler = self.compiler;
-        let known = compiler.gains.borrow().get(&index).copied();
+        let shape = shape(compiler, index, &before);
+        let known = compiler.gains.borrow().get(&shape).copied();
         let gains = known.unwrap_or_else(|| {
             let measured = compiler.gains.borrow().len() < MEASURED;
             let gains = measured && gains(compiler, index, &before);
-            compiler.gains.borrow_mut().insert(index, gains);
+            compiler.gains.borrow_mut().insert(shape, gains);
             gains
         });
         if !gains {
@@ -351,6 +354,53 @@ fn point_function(
             Signal::certain(b, x)
         })
     })
+}
+
+/// A hash of all that the region's function and its entries depend on: regions of one shape are
+/// measured once.
+fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
+    let mut hasher = FxHasher::default();
+    let mut places: FxHashMap<usize, usize> = FxHashMap::default();
+    let From::Node(first) = pair.first.from else {
+        panic!("a pair begins with a node")
+    };
+    places.insert(first.index(), 0);
+    let mut nodes = Vec::new();
+    let second = match pair.second.from {
+        From::Node(second) => second,
+        From::Rest { sum, term } => {
+            nodes.extend(region(compiler, term.index(), &[first]));
+            sum
+        }
+    };
+    places.insert(second.index(), 1);
+    nodes.extend(region(compiler, index, &[first, second]));
+    nodes.len().hash(&mut hasher);
+    for index in nodes {
+        let node = &compiler.graph.nodes[index];
+        node.definition.hash(&mut hasher);
+        node.ty.hash(&mut hasher);
+        for input in &node.inputs {
+            input.ty.hash(&mut hasher);
+            match &input.source {
+                Source::Node(id) => places.get(&id.index()).hash(&mut hasher),
+                other => format!("{other:?}").hash(&mut hasher),
+            }
+        }
+        let place = places.len();
+        places.insert(index, place);
+    }
+    for entry in [&pair.first, &pair.second] {
+        for number in [
+            entry.signal.range[0],
+            entry.signal.range[1],
+            entry.deviation,
+        ] {
+            number.to_bits().hash(&mut hasher);
+        }
+    }
+    matches!(pair.second.from, From::Node(_)).hash(&mut hasher);
+    hasher.finish()
 }
 
 /// Whether the closed form of the region is off by more than [`TOLERANCE`] under one of a few
