@@ -1,5 +1,6 @@
 //! Rotation of a vector in the plane.
 
+use mipless_codegen::ir::{Builder, SharedFunction, Value};
 use mipless_codegen::moments::{Signal, Sine};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -88,11 +89,68 @@ pub(crate) fn rotated(
         return [x.clone(), y.clone()];
     }
     let [cosine, sine] = turn(lower, degrees);
+    let b = lower.b();
+    if let (Some(x), Some(y)) = (place(b, x), place(b, y))
+        && cosine.is_certain(b)
+        && sine.is_certain(b)
+    {
+        return turned(b, [x, y], [cosine.mean, sine.mean]);
+    }
     let (cx, sy) = (product(lower, x, &cosine), product(lower, y, &sine));
     let (sx, cy) = (product(lower, x, &sine), product(lower, y, &cosine));
     let b = lower.b();
     [cx.sub(b, &sy), sx.add(b, &cy)]
 }
+
+/// A coordinate that carries nothing but a cell, a fraction and its response to the footprint.
+fn place(b: &Builder, x: &Signal) -> Option<[Value; 4]> {
+    let plain = x.shared.is_empty() && b.is_zero(x.private) && x.h.iter().all(|&h| b.is_zero(h));
+    plain.then_some([x.cell?, x.mean, x.g[0], x.g[1]])
+}
+
+/// Two such coordinates turned by an angle of this cosine and sine.
+fn turned(b: &mut Builder, [x, y]: [[Value; 4]; 2], [cosine, sine]: [Value; 2]) -> [Signal; 2] {
+    let of = SharedFunction {
+        name: "turn",
+        variant: 0,
+        doc: "A position turned about the origin.",
+    };
+    let mut inputs = Vec::new();
+    for (names, place) in [(X, x), (Y, y)] {
+        inputs.extend(names.into_iter().zip(place));
+    }
+    inputs.extend([("cosine", cosine), ("sine", sine)]);
+    let signal = |b: &mut Builder, v: &[Value]| {
+        Signal {
+            cell: Some(v[0]),
+            g: [v[2], v[3]],
+            ..Signal::certain(b, v[1])
+        }
+        .with_range(UNBOUNDED)
+    };
+    let results = b.shared(of, &inputs, |b, v| {
+        let (x, y) = (signal(b, &v[..4]), signal(b, &v[4..8]));
+        let (cx, sx) = (x.scale(b, v[8]), x.scale(b, v[9]));
+        let (cy, sy) = (y.scale(b, v[8]), y.scale(b, v[9]));
+        let (x, y) = (cx.sub(b, &sy), sx.add(b, &cy));
+        let cell = |signal: &Signal| signal.cell.expect("sums of positions keep their cells");
+        [
+            (X[0], cell(&x)),
+            (X[1], x.mean),
+            (X[2], x.g[0]),
+            (X[3], x.g[1]),
+            (Y[0], cell(&y)),
+            (Y[1], y.mean),
+            (Y[2], y.g[0]),
+            (Y[3], y.g[1]),
+        ]
+    });
+    [&results[..4], &results[4..]].map(|v| signal(b, v))
+}
+
+const X: [&str; 4] = ["cell_x", "x", "x_gx", "x_gy"];
+const Y: [&str; 4] = ["cell_y", "y", "y_gx", "y_gy"];
+const UNBOUNDED: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
 
 /// The cosine and sine of an angle in degrees.
 pub(crate) fn turn(lower: &mut Lower<'_>, degrees: &Signal) -> [Signal; 2] {
