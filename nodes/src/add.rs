@@ -1,10 +1,8 @@
 //! Sum.
 
-use crate::componentwise::binary;
+use crate::componentwise::{OPERANDS, binary};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "add",
@@ -21,22 +19,7 @@ static SPEC: NodeSpec = NodeSpec {
             and Accurate Surface Shading*, §2.2 (linear maps of a mean and a covariance). \
             MaterialX 1.39 specification, node `add`.",
     },
-    inputs: &[
-        PortSpec::new(
-            "in1",
-            PortType::Any,
-            Default::Float(0.0),
-            "The first operand.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "in2",
-            PortType::Any,
-            Default::Float(0.0),
-            "The second operand.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
-    ],
+    inputs: OPERANDS,
     output: OutputType::Widest,
     class: |_| Behaviour::Linear,
     example: r#"{

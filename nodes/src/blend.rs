@@ -2,9 +2,32 @@
 
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::Node;
+use mipless_graph::{Default, Node, PortSpec, PortType, Range, Type};
 
 use crate::componentwise::{composed, exposed, mixed, product, transfer};
+
+/// What is blended, over what, and how much of the result is taken.
+pub(crate) const LAYERS: &[PortSpec] = &[
+    PortSpec::new(
+        "fg",
+        PortType::Any,
+        Default::Float(0.0),
+        "The signal that is blended in.",
+    ),
+    PortSpec::new(
+        "bg",
+        PortType::Any,
+        Default::Float(0.0),
+        "The signal that is blended over.",
+    ),
+    PortSpec::new(
+        "mix",
+        PortType::Exactly(Type::Float),
+        Default::Float(1.0),
+        "How much of the result is taken; 0 leaves bg.",
+    )
+    .range(Range::soft(0.0, 1.0)),
+];
 
 /// bg + mix (mode(fg, bg) − bg), for each component.
 pub(crate) fn blend(

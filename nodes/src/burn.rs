@@ -1,12 +1,9 @@
 //! Burn.
 
-use crate::blend::blend;
+use crate::blend::{LAYERS, blend};
 use crate::componentwise::quotient;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "burn",
@@ -28,27 +25,7 @@ static SPEC: NodeSpec = NodeSpec {
             normal frequency distribution* (fourth moments from second ones). MaterialX 1.39 \
             specification, node `burn`.",
     },
-    inputs: &[
-        PortSpec::new(
-            "fg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The signal that is blended in.",
-        ),
-        PortSpec::new(
-            "bg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The signal that is blended over.",
-        ),
-        PortSpec::new(
-            "mix",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "How much of the result is taken; 0 leaves bg.",
-        )
-        .range(Range::soft(0.0, 1.0)),
-    ],
+    inputs: LAYERS,
     output: OutputType::Widest,
     class,
     example: r#"{

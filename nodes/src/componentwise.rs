@@ -3,7 +3,25 @@
 use mipless_codegen::ir::Value;
 use mipless_codegen::moments::{Reciprocal, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::Node;
+use mipless_graph::{Default, Node, PortSpec, PortType, Range};
+
+/// Two operands of any type.
+pub(crate) const OPERANDS: &[PortSpec] = &[
+    PortSpec::new(
+        "in1",
+        PortType::Any,
+        Default::Float(0.0),
+        "The first operand.",
+    )
+    .range(Range::soft(-1.0, 1.0)),
+    PortSpec::new(
+        "in2",
+        PortType::Any,
+        Default::Float(0.0),
+        "The second operand.",
+    )
+    .range(Range::soft(-1.0, 1.0)),
+];
 
 /// `f` of each component of a port.
 pub(crate) fn unary(

@@ -3,9 +3,32 @@
 
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::Node;
+use mipless_graph::{Default, Node, PortSpec, PortType, Range, Type};
 
 use crate::componentwise::{composed, exposed, mixed};
+
+/// The two layers, and how much of the result is taken.
+pub(crate) const IMAGES: &[PortSpec] = &[
+    PortSpec::new(
+        "fg",
+        PortType::Exactly(Type::Color4),
+        Default::Float(0.0),
+        "The layer in front; premultiplied, but for `matte`.",
+    ),
+    PortSpec::new(
+        "bg",
+        PortType::Exactly(Type::Color4),
+        Default::Float(0.0),
+        "The layer behind, premultiplied.",
+    ),
+    PortSpec::new(
+        "mix",
+        PortType::Exactly(Type::Float),
+        Default::Float(1.0),
+        "How much of the result is taken; 0 leaves bg.",
+    )
+    .range(Range::soft(0.0, 1.0)),
+];
 
 /// bg + mix (result − bg) for each of four channels, alpha last; `operation` gives channel `k`.
 pub(crate) fn composite(

@@ -1,10 +1,9 @@
 //! Choice by comparison, equality included.
 
 use crate::componentwise::binary;
+use crate::condition::CHOICE;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "ifgreatereq",
@@ -26,34 +25,7 @@ static SPEC: NodeSpec = NodeSpec {
             multivariate normal distribution*, lemma 1. MaterialX 1.39 specification, node \
             `ifgreatereq`.",
     },
-    inputs: &[
-        PortSpec::new(
-            "value1",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "The first number that is compared.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "value2",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The second number that is compared.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "in1",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result where the condition holds.",
-        ),
-        PortSpec::new(
-            "in2",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result elsewhere.",
-        ),
-    ],
+    inputs: CHOICE,
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
     example: r#"{

@@ -7,6 +7,7 @@ mod arc;
 mod blend;
 mod componentwise;
 mod composite;
+mod condition;
 mod hsv;
 mod noise;
 mod page;

@@ -1,11 +1,9 @@
 //! The lighter of two layers.
 
-use crate::blend::blend;
+use crate::blend::{LAYERS, blend};
 
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "lighten",
@@ -23,27 +21,7 @@ static SPEC: NodeSpec = NodeSpec {
         references: "Clark 1961, *The Greatest of a Finite Set of Random Variables*, eqs. 2–6. W3C, \
             *Compositing and Blending Level 1*, §10 (blend modes).",
     },
-    inputs: &[
-        PortSpec::new(
-            "fg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The signal that is blended in.",
-        ),
-        PortSpec::new(
-            "bg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The signal that is blended over.",
-        ),
-        PortSpec::new(
-            "mix",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "How much of the result is taken; 0 leaves bg.",
-        )
-        .range(Range::soft(0.0, 1.0)),
-    ],
+    inputs: LAYERS,
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
     example: r#"{

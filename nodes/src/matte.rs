@@ -1,11 +1,9 @@
 //! Matte.
 
 use crate::componentwise::product;
-use crate::composite::composite;
+use crate::composite::{IMAGES, composite};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "matte",
@@ -24,27 +22,7 @@ static SPEC: NodeSpec = NodeSpec {
             for the product-moment coefficient of any order of a normal frequency distribution* \
             (fourth moments from second ones). MaterialX 1.39 specification, node `matte`.",
     },
-    inputs: &[
-        PortSpec::new(
-            "fg",
-            PortType::Exactly(Type::Color4),
-            Default::Float(0.0),
-            "The layer in front, premultiplied.",
-        ),
-        PortSpec::new(
-            "bg",
-            PortType::Exactly(Type::Color4),
-            Default::Float(0.0),
-            "The layer behind, premultiplied.",
-        ),
-        PortSpec::new(
-            "mix",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "How much of the result is taken; 0 leaves bg.",
-        )
-        .range(Range::soft(0.0, 1.0)),
-    ],
+    inputs: IMAGES,
     output: OutputType::Exactly(Type::Color4),
     class: |_| Behaviour::Product,
     example: r#"{

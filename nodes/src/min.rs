@@ -1,10 +1,8 @@
 //! Minimum.
 
-use crate::componentwise::{binary, minimum};
+use crate::componentwise::{OPERANDS, binary, minimum};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "min",
@@ -22,22 +20,7 @@ static SPEC: NodeSpec = NodeSpec {
         references: "Clark 1961, *The Greatest of a Finite Set of Random Variables*, eqs. 2 and 4–6. \
             MaterialX 1.39 specification, node `min`.",
     },
-    inputs: &[
-        PortSpec::new(
-            "in1",
-            PortType::Any,
-            Default::Float(0.0),
-            "The first operand.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "in2",
-            PortType::Any,
-            Default::Float(0.0),
-            "The second operand.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
-    ],
+    inputs: OPERANDS,
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
     example: r#"{

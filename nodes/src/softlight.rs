@@ -1,12 +1,10 @@
 //! Soft light.
 
-use crate::blend::blend;
+use crate::blend::{LAYERS, blend};
 use crate::componentwise::{product, transfer};
 use mipless_codegen::moments::Polynomial;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "softlight",
@@ -28,27 +26,7 @@ static SPEC: NodeSpec = NodeSpec {
             *Crosscorrelation functions of amplitude-distorted Gaussian signals*; Stein 1981, \
             *Estimation of the mean of a multivariate normal distribution*, lemma 1.",
     },
-    inputs: &[
-        PortSpec::new(
-            "fg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The signal that is blended in.",
-        ),
-        PortSpec::new(
-            "bg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The signal that is blended over.",
-        ),
-        PortSpec::new(
-            "mix",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "How much of the result is taken; 0 leaves bg.",
-        )
-        .range(Range::soft(0.0, 1.0)),
-    ],
+    inputs: LAYERS,
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
     example: r#"{
