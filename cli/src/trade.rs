@@ -48,6 +48,9 @@ const METHODS: [Method; 14] = [
     Method::Supersample(1024),
 ];
 
+/// Turns in which a method and `point` are timed on a graphics device.
+const TURNS: u32 = 5;
+
 /// Pixels over which errors are measured.
 const PIXELS: usize = 80 * 48;
 
@@ -151,26 +154,21 @@ fn time_on_gpu(
         return Ok(false);
     };
     let failed = |error| Mistake::usage("device-failed", error);
-    for measurement in methods.iter_mut() {
-        let program = scene.texture.compile(&scene.options(measurement.method));
-        let pipeline = gpu.pipeline(&program).map_err(failed)?;
-        gpu.set_parameters(&pipeline, &scene.parameters)
-            .map_err(failed)?;
-        let mut best = f64::INFINITY;
-        for _ in 0..3 {
-            let work = |job: Job<'_>| gpu.render(&pipeline, &scene.view, scene.size, job);
-            let label = measurement.method.to_string();
-            let (_, timing) = progress::watch(report, &label, work).map_err(failed)?;
-            best = best.min(timing.best().as_secs_f64() / timing.footprints.max(1) as f64);
-        }
-        measurement.seconds = best;
-    }
-    let point = methods
-        .iter()
-        .find(|m| m.method == Method::Point)
-        .map_or(1.0, |m| m.seconds);
+    let pipeline = |method| {
+        let program = scene.texture.compile(&scene.options(method));
+        let pipeline = gpu.pipeline(&program)?;
+        gpu.set_parameters(&pipeline, &scene.parameters)?;
+        Ok(pipeline)
+    };
+    let point = pipeline(Method::Point).map_err(failed)?;
     for measurement in methods {
-        measurement.cost = measurement.seconds / point;
+        let pipeline = pipeline(measurement.method).map_err(failed)?;
+        let (view, size) = (&scene.view, scene.size);
+        let work = |job: Job<'_>| gpu.pace(&pipeline, &point, view, size, TURNS, job);
+        let label = measurement.method.to_string();
+        let pace = progress::watch(report, &label, work).map_err(failed)?;
+        measurement.seconds = pace.seconds;
+        measurement.cost = pace.ratio;
     }
     Ok(true)
 }

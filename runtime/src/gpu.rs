@@ -6,11 +6,13 @@
 
 mod adapter;
 mod error;
+mod pace;
 mod pipeline;
 mod render;
 
 pub use adapter::{AdapterChoice, AdapterReport};
 pub use error::GpuError;
+pub use pace::Pace;
 pub use pipeline::Pipeline;
 pub use render::Timing;
 
