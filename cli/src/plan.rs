@@ -5,6 +5,8 @@ use crate::progress;
 use crate::report::Report;
 use crate::scene::Scene;
 use mipless::{Method, Options};
+use mipless_runtime::device::Device;
+use mipless_runtime::gpu::Gpu;
 use mipless_runtime::job::Job;
 use mipless_runtime::plan::{CANDIDATES, Measured, Measurement, Sample, Subject, choose, measure};
 use serde_json::{Value, json};
@@ -12,6 +14,9 @@ use std::fmt;
 
 /// How many pixels the errors are measured over: enough to know them to some percent.
 const PIXELS: usize = 40 * 24;
+
+/// Turns in which a method and `point` are timed on a graphics device.
+const TURNS: u32 = 5;
 
 /// What is asked for: a tolerance, a budget, or both.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +42,8 @@ pub(crate) struct Plan {
     chosen: usize,
 }
 
-/// Measures methods on the pixels of a scene.
+/// Measures methods on pixels of a scene: their errors on the CPU, their costs where the scene is
+/// evaluated.
 pub(crate) fn measured(
     scene: &Scene,
     methods: &[Method],
@@ -53,8 +59,39 @@ pub(crate) fn measured(
     };
     let sample = Sample::new(&scene.view, scene.size, pixels);
     let work = |job: Job<'_>| measure(&subject, &sample, methods, job);
-    progress::watch(report, "measuring", work)
-        .map_err(|error| Mistake::usage("render-failed", error))
+    let mut measured = progress::watch(report, "measuring", work)
+        .map_err(|error| Mistake::usage("render-failed", error))?;
+    if let Device::Gpu(gpu) = &scene.device {
+        time_on_gpu(scene, gpu, &mut measured.methods, report)?;
+    }
+    Ok(measured)
+}
+
+/// Replaces the times by those of a graphics device.
+fn time_on_gpu(
+    scene: &Scene,
+    gpu: &Gpu,
+    methods: &mut [Measurement],
+    report: &Report,
+) -> Result<(), Mistake> {
+    let failed = |error| Mistake::usage("device-failed", error);
+    let pipeline = |method| {
+        let program = scene.texture.compile(&scene.options(method));
+        let pipeline = gpu.pipeline(&program)?;
+        gpu.set_parameters(&pipeline, &scene.parameters)?;
+        Ok(pipeline)
+    };
+    let point = pipeline(Method::Point).map_err(failed)?;
+    for measurement in methods {
+        let pipeline = pipeline(measurement.method).map_err(failed)?;
+        let (view, size) = (&scene.view, scene.size);
+        let work = |job: Job<'_>| gpu.pace(&pipeline, &point, view, size, TURNS, job);
+        let label = measurement.method.to_string();
+        let pace = progress::watch(report, &label, work).map_err(failed)?;
+        measurement.seconds = pace.seconds;
+        measurement.cost = pace.ratio;
+    }
+    Ok(())
 }
 
 impl Plan {

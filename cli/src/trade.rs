@@ -2,9 +2,8 @@
 
 use crate::mistake::Mistake;
 use crate::plan;
-use crate::progress;
 use crate::report::Report;
-use crate::scene::{self, Scene};
+use crate::scene;
 use crate::value;
 use clap::Args;
 use mipless::Method;
@@ -12,7 +11,6 @@ use mipless_graph::CheckOptions;
 use mipless_runtime::chart::{Chart, Mark, draw};
 use mipless_runtime::device::Device;
 use mipless_runtime::image_file::{Bits, Format, encode, write_all};
-use mipless_runtime::job::Job;
 use mipless_runtime::plan::{Measurement, TRUTH, front};
 use mipless_runtime::view::Size;
 use serde_json::{Value, json};
@@ -48,9 +46,6 @@ const METHODS: [Method; 14] = [
     Method::Supersample(1024),
 ];
 
-/// Turns in which a method and `point` are timed on a graphics device.
-const TURNS: u32 = 5;
-
 /// Pixels over which errors are measured.
 const PIXELS: usize = 80 * 48;
 
@@ -65,9 +60,8 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     let scene = arguments
         .scene
         .open(&CheckOptions::default(), default, report)?;
-    let mut measured = plan::measured(&scene, &METHODS, PIXELS, report)?;
+    let measured = plan::measured(&scene, &METHODS, PIXELS, report)?;
     let floor = measured.noise_floor;
-    let on_gpu = time_on_gpu(&scene, &mut measured.methods, report)?;
     let best = front(&measured.methods);
 
     let methods: Vec<Value> = (measured.methods.iter().zip(&best))
@@ -81,10 +75,9 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
             })
         })
         .collect();
-    let runs_on = if on_gpu {
-        scene.device.to_string()
-    } else {
-        "CPU (1 thread)".to_owned()
+    let runs_on = match &scene.device {
+        Device::Gpu(_) => scene.device.to_string(),
+        Device::Cpu => "CPU (1 thread)".to_owned(),
     };
     let name = &scene.texture.checked().graph().name;
     let found = json!({
@@ -142,35 +135,6 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     report.result("files", names);
     report.result("trade", found);
     Ok(())
-}
-
-/// Replaces the times by those of the GPU, if that is the device; tells whether it did.
-fn time_on_gpu(
-    scene: &Scene,
-    methods: &mut [Measurement],
-    report: &Report,
-) -> Result<bool, Mistake> {
-    let Device::Gpu(gpu) = &scene.device else {
-        return Ok(false);
-    };
-    let failed = |error| Mistake::usage("device-failed", error);
-    let pipeline = |method| {
-        let program = scene.texture.compile(&scene.options(method));
-        let pipeline = gpu.pipeline(&program)?;
-        gpu.set_parameters(&pipeline, &scene.parameters)?;
-        Ok(pipeline)
-    };
-    let point = pipeline(Method::Point).map_err(failed)?;
-    for measurement in methods {
-        let pipeline = pipeline(measurement.method).map_err(failed)?;
-        let (view, size) = (&scene.view, scene.size);
-        let work = |job: Job<'_>| gpu.pace(&pipeline, &point, view, size, TURNS, job);
-        let label = measurement.method.to_string();
-        let pace = progress::watch(report, &label, work).map_err(failed)?;
-        measurement.seconds = pace.seconds;
-        measurement.cost = pace.ratio;
-    }
-    Ok(true)
 }
 
 /// The table for people.

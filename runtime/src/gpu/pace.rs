@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::{Gpu, GpuError, Pipeline, Timing};
+use super::{Gpu, GpuError, Pipeline};
 use crate::job::Job;
 use crate::view::{Size, View};
 
@@ -21,12 +21,12 @@ pub struct Pace {
     pub ratio: f64,
 }
 
-/// Who takes longer than this for a picture has few turns.
+/// Who takes longer than this for a picture has one turn after the first.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 impl Gpu {
     /// Measures a pipeline against a baseline in `rounds` turns after one that finds the size of
-    /// their dispatches, in fewer turns if they are slow.
+    /// their dispatches.
     ///
     /// # Errors
     /// As [`Gpu::render`].
@@ -39,20 +39,28 @@ impl Gpu {
         rounds: u32,
         job: Job<'_>,
     ) -> Result<Pace, GpuError> {
-        let per_footprint =
-            |timing: Timing| timing.best().as_secs_f64() / timing.footprints.max(1) as f64;
+        let time = |pipeline, job| {
+            let (_, timing) = self.render(pipeline, view, size, job)?;
+            let footprints = timing.footprints.max(1) as f64;
+            Ok::<f64, GpuError>(timing.best().as_secs_f64() / footprints)
+        };
         let mut turns: Vec<[f64; 2]> = Vec::new();
-        for round in 0..=rounds {
+        let mut before = time(baseline, Job::default())?;
+        let mut rounds = rounds.max(1);
+        let mut round = 0;
+        while round <= rounds {
             let begun = Instant::now();
-            let (_, by_baseline) = self.render(baseline, view, size, Job::default())?;
-            let (_, by_pipeline) = self.render(pipeline, view, size, job)?;
-            let slow = begun.elapsed() > PATIENCE;
-            if round > 0 || slow || rounds == 0 {
-                turns.push([by_pipeline, by_baseline].map(per_footprint));
+            let by_pipeline = time(pipeline, job)?;
+            let after = time(baseline, Job::default())?;
+            if begun.elapsed() > PATIENCE {
+                rounds = 1;
             }
-            if slow {
-                break;
+            // Some drivers compile a shader only when it first runs.
+            if round > 0 {
+                turns.push([by_pipeline, before.min(after)]);
             }
+            before = after;
+            round += 1;
         }
         let least = |which: usize| turns.iter().map(|t| t[which]).fold(f64::INFINITY, f64::min);
         let mut ratios: Vec<f64> = (turns.iter())
