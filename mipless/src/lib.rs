@@ -52,6 +52,30 @@
 //! assert!(height[0][0].is_finite());
 //! ```
 //!
+//! # List the nodes, edit
+//! A node is its spec: ports, types, ranges, defaults and the texts of its page. A [`Document`] is
+//! what a file says; edit a copy and load it again, and mistakes are located in its text.
+//! ```
+//! # use mipless::{Texture, specs};
+//! use mipless::{Binding, NodeEntry, Reference};
+//!
+//! # let texture = Texture::from_json(r##"{ "version": 1, "name": "clouds",
+//! #     "nodes": { "noise": { "type": "noise2d" } },
+//! #     "outputs": { "height": { "node": "noise" } } }"##).expect("the graph has no mistakes");
+//! let clamp = specs().into_iter().find(|spec| spec.name == "clamp").expect("it is in the catalogue");
+//! assert!(clamp.inputs.iter().any(|port| port.name == "low"));
+//!
+//! let mut document = texture.document().clone();
+//! let mut node = NodeEntry { ty: clamp.name.to_owned(), ..NodeEntry::default() };
+//! node.inputs.insert("in".to_owned(), Binding::Node(Reference::new("noise")));
+//! node.inputs.insert("high".to_owned(), Binding::Value(0.25.into()));
+//! document.body.nodes.insert("clamped".to_owned(), node);
+//! document.body.outputs["height"] = Reference::new("clamped");
+//!
+//! let edited = Texture::from_json(&document.to_text()).expect("the graph has no mistakes");
+//! assert_eq!(edited.document(), &document);
+//! ```
+//!
 //! # Compile
 //! ```
 //! # use mipless::{Options, Texture, wgsl};
@@ -75,7 +99,8 @@ pub use mipless_codegen::cpu::Footprint;
 pub use mipless_codegen::ir::Program;
 pub use mipless_codegen::{Method, NodeDef, Options, PixelFilter, target, wgsl};
 pub use mipless_graph::{
-    Checked, Diagnostic, Document, Literal, NodeSpec, Output, Parameter, Severity, Signal, Type,
+    Binding, Body, CheckOptions, Checked, Diagnostic, Document, InputEntry, Literal, Map,
+    NodeEntry, NodeSpec, Output, Parameter, PortSpec, PortType, Reference, Severity, Signal, Type,
     parse_setting, schema,
 };
 pub use mipless_nodes::catalogue;
