@@ -24,6 +24,7 @@
 //! identical in every run.
 
 mod build;
+mod expand;
 mod inline;
 mod library;
 mod op;

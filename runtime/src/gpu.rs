@@ -13,7 +13,7 @@ mod render;
 pub use adapter::{AdapterChoice, AdapterReport};
 pub use error::GpuError;
 pub use pace::Pace;
-pub use pipeline::Pipeline;
+pub use pipeline::{LARGEST_PROGRAM, Pipeline};
 pub use render::Timing;
 
 use std::sync::{Arc, Mutex};

@@ -7,7 +7,7 @@
 use libtest_mimic::{Arguments, Failed, Trial};
 use mipless::{Method, Options, Program};
 use mipless_runtime::cpu::Renderer;
-use mipless_runtime::gpu::{AdapterChoice, Gpu, GpuError};
+use mipless_runtime::gpu::{AdapterChoice, Gpu, GpuError, LARGEST_PROGRAM};
 use mipless_runtime::image::Image;
 use mipless_runtime::job::Job;
 use mipless_runtime::view::{Flat, Plane, Size, View};
@@ -40,7 +40,35 @@ fn main() {
             trials.push(Trial::test(format!("device_{name}"), run).with_ignored_flag(ignored));
         }
     }
+    let run = move || refuses(gpu?.as_ref());
+    trials.push(Trial::test("device_refuses_what_takes_minutes", run).with_ignored_flag(ignored));
     libtest_mimic::run(&arguments, trials).exit();
+}
+
+/// A shader that a driver would take minutes to compile is refused at once.
+fn refuses(gpu: &Gpu) -> Result<(), Failed> {
+    let nodes: Vec<String> = (0..1200)
+        .map(|i| {
+            let noise = format!(r#""n{i}":{{"type":"noise2d","inputs":{{"seed":{i}}}}}"#);
+            let before = match i {
+                0 => "0".to_owned(),
+                _ => format!(r#"{{"node":"m{}"}}"#, i - 1),
+            };
+            format!(
+                r#"{noise},"m{i}":{{"type":"max","inputs":{{"in1":{{"node":"n{i}"}},"in2":{before}}}}}"#
+            )
+        })
+        .collect();
+    let text = format!(
+        r#"{{"version":1,"name":"long","nodes":{{{}}},"outputs":{{"out":{{"node":"m1199"}}}}}}"#,
+        nodes.join(",")
+    );
+    let case = Case::new("long", text);
+    match gpu.pipeline(&compile(&case, Method::Local)) {
+        Err(GpuError::TooLong(instructions)) if instructions > LARGEST_PROGRAM => Ok(()),
+        Err(error) => Err(format!("refused for another reason: {error}").into()),
+        Ok(_) => Err("a shader of 2,400 nodes was compiled".into()),
+    }
 }
 
 /// A picture that recedes to the horizon, so that it holds footprints of every size, and a flat one.

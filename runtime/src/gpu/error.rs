@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::AdapterReport;
+use super::{AdapterReport, LARGEST_PROGRAM};
 use crate::job::Cancelled;
 
 /// Why there is no device, or no image from it.
@@ -16,6 +16,8 @@ pub enum GpuError {
     Validation(String),
     /// The device has too little memory.
     OutOfMemory(String),
+    /// The shader has this many instructions: a driver would take minutes to compile it.
+    TooLong(u64),
     /// The results of one evaluation do not fit the device's limits.
     TooLarge,
     /// The device failed or was lost, with the driver's reason.
@@ -42,6 +44,11 @@ impl fmt::Display for GpuError {
             Self::Open(report, reason) => write!(f, "{report} does not open: {reason}"),
             Self::Validation(reason) => write!(f, "the device refuses the shader: {reason}"),
             Self::OutOfMemory(reason) => write!(f, "the device has too little memory: {reason}"),
+            Self::TooLong(instructions) => write!(
+                f,
+                "the shader has {instructions} instructions, more than the {LARGEST_PROGRAM} that \
+                 drivers compile within a minute"
+            ),
             Self::TooLarge => f.write_str("the shader has more results than the device can hold"),
             Self::Device(reason) => write!(f, "the device failed: {reason}"),
             Self::Cancelled(cancelled) => cancelled.fmt(f),

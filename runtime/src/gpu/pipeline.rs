@@ -26,6 +26,11 @@ pub struct Pipeline {
     shader: Shader,
 }
 
+/// The longest program that a device is given, in instructions once calls are expanded, as drivers
+/// expand them: compiling takes longer than linear, and cannot be stopped. A software device (one
+/// thread of a server, LLVM 15) took 40 s for 218,000 and 61 s for 305,000.
+pub const LARGEST_PROGRAM: u64 = 300_000;
+
 /// The smallest buffer that is bound in place of an empty one: the size of a vec4f.
 const LEAST: u64 = 16;
 
@@ -33,8 +38,13 @@ impl Gpu {
     /// Compiles a program, with its default parameters.
     ///
     /// # Errors
-    /// If the device refuses the shader, or has too little memory.
+    /// If the program has more than [`LARGEST_PROGRAM`] instructions once its calls are expanded,
+    /// the device refuses the shader, or has too little memory.
     pub fn pipeline(&self, program: &Program) -> Result<Pipeline, GpuError> {
+        let instructions = program.module.expanded_size();
+        if instructions > LARGEST_PROGRAM {
+            return Err(GpuError::TooLong(instructions));
+        }
         self.pipeline_of(emit(
             program,
             &Options {
