@@ -10,6 +10,7 @@ mod fusion;
 mod input;
 mod map;
 mod method;
+mod order;
 mod pair;
 mod sampling;
 mod symbols;
@@ -88,6 +89,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         position: symbols::reads_position(graph),
     };
     let live = symbols::live(graph);
+    let order = order::order(graph, &live);
     let crossed = symbols::crossed(graph);
     let literal = symbols::literal(graph);
     let (functions, fused) = (RefCell::default(), RefCell::default());
@@ -96,6 +98,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         catalogue,
         options,
         live,
+        order,
         crossed,
         literal,
         functions,
@@ -166,6 +169,8 @@ struct Compiler<'a> {
     options: &'a Options,
     /// How many live edges read each node's output.
     live: Vec<u32>,
+    /// The live nodes in the order in which they are lowered.
+    order: Vec<u32>,
     /// Whether components of each node's output are combined later.
     crossed: Vec<bool>,
     /// Whether literals alone shape each node's output.
@@ -279,8 +284,11 @@ impl<'a> Lower<'a> {
 
     /// Lowers the nodes that something uses, `uses` times each.
     fn run_nodes(&mut self, mut uses: Vec<u32>) {
-        let graph = self.compiler.graph;
-        for (index, node) in graph.nodes.iter().enumerate() {
+        let compiler = self.compiler;
+        let graph = compiler.graph;
+        for &index in &compiler.order {
+            let index = index as usize;
+            let node = &graph.nodes[index];
             if uses[index] == 0 {
                 continue;
             }
