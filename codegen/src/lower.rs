@@ -12,11 +12,13 @@ mod map;
 mod method;
 mod order;
 mod pair;
+mod rule;
 mod sampling;
 mod symbols;
 mod table;
 
 pub use method::{Method, ParseMethodError, PixelFilter};
+pub use rule::{NodeRule, PartNames};
 
 use crate::ir::{Builder, FunctionRef, Interface, Library, Module, Port, Program, Value};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
@@ -212,6 +214,10 @@ pub struct Lower<'a> {
     parameter_scalars: Vec<usize>,
     /// The footprint of each source, in wavelengths of its dominant detail.
     footprints: Vec<Value>,
+    /// Whether they are what the function is for.
+    measures: bool,
+    /// Whether a rule is being built, whose functions are the library's.
+    in_rule: bool,
     /// Whether something that is not linear follows a source.
     nonlinear: bool,
 }
@@ -248,6 +254,8 @@ impl<'a> Lower<'a> {
             sums: vec![None; compiler.graph.nodes.len()],
             parameter_scalars,
             footprints: Vec::new(),
+            measures: false,
+            in_rule: false,
             nonlinear: false,
         }
     }
@@ -260,6 +268,7 @@ impl<'a> Lower<'a> {
 
     /// Lowers the sources and what their inputs need, for their footprints alone.
     fn run_sources(&mut self) {
+        self.measures = true;
         let graph = self.compiler.graph;
         let mut uses = vec![0; graph.nodes.len()];
         for (index, node) in graph.nodes.iter().enumerate().rev() {

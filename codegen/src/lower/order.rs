@@ -36,7 +36,11 @@ pub(super) fn order(graph: &Graph, live: &[u32]) -> Vec<u32> {
         }
         ends[index] = inputs.len();
     }
-    let mut outputs: Vec<u32> = graph.outputs.iter().map(|o| o.node.index() as u32).collect();
+    let mut outputs: Vec<u32> = graph
+        .outputs
+        .iter()
+        .map(|o| o.node.index() as u32)
+        .collect();
     outputs.sort_by_key(|&i| size(i as usize) as i32 - room[i as usize] as i32);
 
     let mut order = Vec::with_capacity(count);
