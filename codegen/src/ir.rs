@@ -25,6 +25,7 @@
 
 mod build;
 mod expand;
+mod function;
 mod inline;
 mod library;
 mod op;
@@ -36,6 +37,7 @@ mod text;
 mod verify;
 
 pub use build::{Builder, FunctionRef};
+pub use function::{Body, Function, Parameter};
 pub(crate) use library::Library;
 pub use library::SharedFunction;
 pub(crate) use op::for_each_op;
@@ -43,8 +45,6 @@ pub use op::{Op, OpInfo};
 pub use table::{Numbers, Table};
 pub use text::ParseError;
 pub use verify::{Violation, verify};
-
-use rustc_hash::FxHashMap;
 
 /// The type of a scalar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -172,54 +172,6 @@ impl Inst {
                 init.iter().chain(captures).for_each(|&v| visit(v));
             }
             Self::Result(of, _) => visit(*of),
-        }
-    }
-}
-
-/// A named, typed parameter or result.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Parameter {
-    /// A readable name (an identifier in lower snake case), unique in its function.
-    pub name: String,
-    /// The type.
-    pub ty: Type,
-}
-
-/// A pure function over scalars.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Function {
-    /// A readable name (an identifier in lower snake case), unique in the module.
-    pub name: String,
-    /// One sentence that says what it computes; printed above the function in WGSL.
-    pub doc: String,
-    /// The parameters, in order.
-    pub params: Vec<Parameter>,
-    /// The definitions; [`Value`] indexes them.
-    pub insts: Vec<Inst>,
-    /// The type of each definition (meaningless for [`Inst::Call`] and [`Inst::Fold`]).
-    pub types: Vec<Type>,
-    /// Readable names of some values.
-    pub names: FxHashMap<Value, String>,
-    /// The named results, in order.
-    pub results: Vec<(String, Value)>,
-}
-
-impl Function {
-    /// The definition of `value`.
-    pub fn inst(&self, value: Value) -> &Inst {
-        &self.insts[value.index()]
-    }
-
-    /// The type of `value`.
-    pub fn ty(&self, value: Value) -> Type {
-        self.types[value.index()]
-    }
-
-    /// The constant that `value` is, if it is one.
-    pub fn constant(&self, value: Value) -> Option<Constant> {
-        match self.inst(value) {
-            Inst::Const(constant) => Some(*constant),
-            _ => None,
         }
     }
 }

@@ -10,12 +10,15 @@ mod fusion;
 mod input;
 mod map;
 mod method;
+mod order;
 mod pair;
+mod rule;
 mod sampling;
 mod symbols;
 mod table;
 
 pub use method::{Method, ParseMethodError, PixelFilter};
+pub use rule::{NodeRule, PartNames};
 
 use crate::ir::{Builder, FunctionRef, Interface, Library, Module, Port, Program, Value};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
@@ -88,6 +91,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         position: symbols::reads_position(graph),
     };
     let live = symbols::live(graph);
+    let order = order::order(graph, &live);
     let crossed = symbols::crossed(graph);
     let literal = symbols::literal(graph);
     let (functions, fused) = (RefCell::default(), RefCell::default());
@@ -96,6 +100,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         catalogue,
         options,
         live,
+        order,
         crossed,
         literal,
         functions,
@@ -166,6 +171,8 @@ struct Compiler<'a> {
     options: &'a Options,
     /// How many live edges read each node's output.
     live: Vec<u32>,
+    /// The live nodes in the order in which they are lowered.
+    order: Vec<u32>,
     /// Whether components of each node's output are combined later.
     crossed: Vec<bool>,
     /// Whether literals alone shape each node's output.
@@ -207,6 +214,10 @@ pub struct Lower<'a> {
     parameter_scalars: Vec<usize>,
     /// The footprint of each source, in wavelengths of its dominant detail.
     footprints: Vec<Value>,
+    /// Whether they are what the function is for.
+    measures: bool,
+    /// Whether a rule is being built, whose functions are the library's.
+    in_rule: bool,
     /// Whether something that is not linear follows a source.
     nonlinear: bool,
 }
@@ -243,6 +254,8 @@ impl<'a> Lower<'a> {
             sums: vec![None; compiler.graph.nodes.len()],
             parameter_scalars,
             footprints: Vec::new(),
+            measures: false,
+            in_rule: false,
             nonlinear: false,
         }
     }
@@ -255,6 +268,7 @@ impl<'a> Lower<'a> {
 
     /// Lowers the sources and what their inputs need, for their footprints alone.
     fn run_sources(&mut self) {
+        self.measures = true;
         let graph = self.compiler.graph;
         let mut uses = vec![0; graph.nodes.len()];
         for (index, node) in graph.nodes.iter().enumerate().rev() {
@@ -279,8 +293,11 @@ impl<'a> Lower<'a> {
 
     /// Lowers the nodes that something uses, `uses` times each.
     fn run_nodes(&mut self, mut uses: Vec<u32>) {
-        let graph = self.compiler.graph;
-        for (index, node) in graph.nodes.iter().enumerate() {
+        let compiler = self.compiler;
+        let graph = compiler.graph;
+        for &index in &compiler.order {
+            let index = index as usize;
+            let node = &graph.nodes[index];
             if uses[index] == 0 {
                 continue;
             }

@@ -41,13 +41,15 @@ mod function;
 mod name;
 mod part;
 mod reserved;
+mod spelled;
 mod statement;
 
 pub use name::identifier;
+pub(crate) use spelled::Spelled;
 
 use crate::ir::{FunctionId, Inst, Numbers, Program, Type};
 use entry::{Names, entry_text, face, push_entry_point, push_structs};
-use function::{Context, Signature, is_packed};
+use function::{Context, Signature};
 use name::{Scope, camel};
 use serde::Serialize;
 
@@ -291,26 +293,11 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     let signatures = (module.functions.iter().enumerate())
         .map(|(index, function)| {
             if index == last {
-                return Some(Signature {
-                    name: names.function.clone(),
-                    packed: None,
-                    results: None,
-                    fields: Vec::new(),
-                });
+                return Some(Signature::of_entry(&names.function));
             }
             reached[index].then(|| {
                 let name = globals.take(identifier(&format!("{stem}_{}", function.name)));
-                let camel = camel(&name);
-                let mut fields = Scope::default();
-                Signature {
-                    packed: is_packed(function.params.len())
-                        .then(|| globals.take(format!("{camel}Args"))),
-                    results: (function.results.len() > 1).then(|| globals.take(camel)),
-                    fields: (function.results.iter())
-                        .map(|(field, _)| fields.take(identifier(field)))
-                        .collect(),
-                    name,
-                }
+                Signature::new(name, function, &mut globals)
             })
         })
         .collect();
@@ -342,7 +329,10 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     };
     push_structs(&mut context.out, &names, &face, tables.is_some());
     for index in (0..last).filter(|&index| reached[index]) {
-        function::write(&mut context, FunctionId::from_index(index), None);
+        let id = FunctionId::from_index(index);
+        if !spelled::push(&mut context, id) {
+            function::write(&mut context, id, None);
+        }
     }
     let text = entry_text(program, &names, &face);
     function::write(&mut context, FunctionId::from_index(last), Some(&text));

@@ -3,7 +3,7 @@
 use crate::noise::kernel::Kernel;
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
 use crate::noise::source::{
-    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position, shaped,
+    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of,
 };
 use crate::noise2d::deviation;
 use mipless_codegen::NodeDef;
@@ -39,10 +39,8 @@ pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
     lower: |lower, node| {
         let octaves = tiled_octaves(lower, node);
-        let position = position(lower, node);
         let kernel = Kernel::of(lower, node);
-        kernel.report(lower, &position);
-        let field = kernel.filtered(lower, &position, octaves);
-        shaped(lower, node, &field, octaves.sd(), &position)
+        let extent = EXTENT * octaves.sd();
+        octaves_of(lower, node, (kernel, octaves), (0.25, extent))
     },
 };

@@ -3,7 +3,7 @@
 use crate::noise::kernel::Kernel;
 use crate::noise::lattice::Octaves;
 use crate::noise::source::{
-    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position, shaped, tiling,
+    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, tiling,
 };
 use mipless_codegen::NodeDef;
 use mipless_graph::{Category, Doc, InputView, NodeSpec, OutputType, Type};
@@ -80,10 +80,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
             seed: lower.integer(node, "seed"),
             period: lower.integer(node, "period").max(0) as u32,
         };
-        let position = position(lower, node);
         let kernel = Kernel::of(lower, node);
-        kernel.report(lower, &position);
-        let field = kernel.filtered(lower, &position, octaves);
-        shaped(lower, node, &field, 1.0, &position)
+        octaves_of(lower, node, (kernel, octaves), (0.25, EXTENT))
     },
 };

@@ -4,7 +4,7 @@ use crate::noise::kernel::Kernel;
 use crate::noise::lattice::Octaves;
 use crate::noise::perlin::Kind;
 
-use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, position, scaled, tiling};
+use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, tiling};
 use mipless_codegen::NodeDef;
 use mipless_graph::{
     Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
@@ -83,11 +83,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
             seed: lower.integer(node, "seed"),
             period: lower.integer(node, "period").max(0) as u32,
         };
-        let position = position(lower, node);
         let kernel = Kernel::Quintic(Kind::Value);
-        kernel.report(lower, &position);
-        let field = kernel.filtered(lower, &position, octaves);
-        let unit = field.at(lower, &position);
-        scaled(lower, node, unit, (SD, 0.5 / SD))
+        octaves_of(lower, node, (kernel, octaves), (SD, 0.5 / SD))
     },
 };

@@ -12,12 +12,13 @@
 
 use super::prune::without_dead_code;
 use super::{
-    Constant, Function, FunctionId, Inst, Library, Module, Numbers, Op, Parameter, Table, Type,
-    Value, op::fold_constants,
+    Body, Constant, Function, FunctionId, Inst, Library, Module, Numbers, Op, Parameter, Table,
+    Type, Value, op::fold_constants,
 };
 use hashbrown::{HashTable, hash_table::Entry};
-use rustc_hash::{FxBuildHasher, FxHashMap};
+use rustc_hash::FxBuildHasher;
 use std::hash::BuildHasher;
+use std::sync::Arc;
 
 /// A finished function of a module, as a callee.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ pub struct FunctionRef {
     /// Which.
     pub id: FunctionId,
     /// The types of its results.
-    pub results: Vec<Type>,
+    pub results: Arc<[Type]>,
 }
 
 /// A definition in the table of those that are known: with its hash, which tells most others apart
@@ -39,7 +40,8 @@ struct Known {
 /// A function under construction.
 #[derive(Debug)]
 pub struct Builder {
-    function: Function,
+    name: String,
+    function: Body,
     /// The definitions by their hash: equal instructions are found, not stored twice.
     cons: HashTable<Known>,
     /// The functions that the module's functions share, where it has any.
@@ -50,14 +52,10 @@ impl Builder {
     /// An empty function; `doc` is one sentence.
     pub fn new(name: impl Into<String>, doc: impl Into<String>) -> Self {
         Self {
-            function: Function {
-                name: name.into(),
+            name: name.into(),
+            function: Body {
                 doc: doc.into(),
-                params: Vec::new(),
-                insts: Vec::new(),
-                types: Vec::new(),
-                names: FxHashMap::default(),
-                results: Vec::new(),
+                ..Body::default()
             },
             cons: HashTable::new(),
             library: None,
@@ -68,6 +66,16 @@ impl Builder {
     pub(crate) fn with_library(mut self, library: Library) -> Self {
         self.library = Some(library);
         self
+    }
+
+    /// Whether shared rules are calls.
+    pub(crate) fn has_library(&self) -> bool {
+        self.library.is_some()
+    }
+
+    /// The functions that the module's functions share.
+    pub(crate) fn library(&self) -> Option<&Library> {
+        self.library.as_ref()
     }
 
     /// A further parameter.
@@ -102,17 +110,18 @@ impl Builder {
 
     /// Adds the function to `module`, without the instructions that no result needs.
     pub fn finish(self, module: &mut Module) -> FunctionRef {
-        let function = without_dead_code(self.function);
-        let results = function
-            .results
-            .iter()
-            .map(|&(_, v)| function.ty(v))
-            .collect();
+        let function = self.finished();
+        let results = function.result_types();
         module.functions.push(function);
         FunctionRef {
             id: FunctionId(module.functions.len() as u32 - 1),
             results,
         }
+    }
+
+    /// The function without the instructions that no result needs.
+    pub(super) fn finished(self) -> Function {
+        Function::new(self.name, without_dead_code(self.function))
     }
 
     /// The type of a value.
@@ -199,7 +208,7 @@ impl Builder {
                 ty,
                 "operand of {} in {}",
                 info.name,
-                self.function.name
+                self.name
             );
         }
         if let Some(value) = self.simplified(op, padded) {

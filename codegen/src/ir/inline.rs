@@ -101,8 +101,6 @@ fn reference(module: &Module, id: super::FunctionId) -> FunctionRef {
     let function = module.function(id);
     FunctionRef {
         id,
-        results: (function.results.iter())
-            .map(|&(_, v)| function.ty(v))
-            .collect(),
+        results: function.result_types(),
     }
 }

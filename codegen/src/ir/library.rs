@@ -5,12 +5,19 @@
 //! person can read, a tenth of the size, in a fraction of the time. Nothing is lost where it runs:
 //! shader compilers inline functions, and so does the CPU evaluator (`Module::inlined`), which
 //! then removes the results that nothing reads and finds what two calls have in common.
+//!
+//! A rule depends on nothing but its key, so a process builds it once: later compilations find it
+//! ready ([`KNOWN`]). What a module becomes does not depend on what is ready, since the functions
+//! of a library are those that its module called, in the order of their first calls.
 
-use super::{Builder, Constant, FunctionId, FunctionRef, Inst, Module, Type, Value};
+use super::function::Kept;
+use super::{Builder, Constant, Function, FunctionId, FunctionRef, Module, Type, Value};
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
 /// Set in the id of a function of the library, until [`Library::link`] gives it its place.
 const SHARED: u32 = 1 << 31;
@@ -18,30 +25,37 @@ const SHARED: u32 = 1 << 31;
 /// What an argument is to a shared function: the constants that simplify what is built are part of
 /// the function, all other values are its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Argument {
-    Zero,
-    One,
-    MinusOne,
-    Passed(Type),
-}
+struct Argument(u8);
 
 impl Argument {
+    const ZERO: Self = Self(4);
+    const ONE: Self = Self(5);
+    const MINUS_ONE: Self = Self(6);
+
     fn of(b: &Builder, value: Value) -> Self {
         match b.as_constant(value) {
-            Some(0.0) => Self::Zero,
-            Some(1.0) => Self::One,
-            Some(-1.0) => Self::MinusOne,
-            _ => Self::Passed(b.ty(value)),
+            Some(0.0) => Self::ZERO,
+            Some(1.0) => Self::ONE,
+            Some(-1.0) => Self::MINUS_ONE,
+            _ => Self(b.ty(value) as u8),
         }
+    }
+
+    /// The type of a parameter; `None` for what stays a constant.
+    fn passed(self) -> Option<Type> {
+        [Type::F32, Type::I32, Type::U32, Type::Bool]
+            .get(usize::from(self.0))
+            .copied()
     }
 }
 
 /// What tells shared functions apart.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct Key {
-    name: &'static str,
+    name: Cow<'static, str>,
     variant: u32,
-    arguments: SmallVec<[Argument; 24]>,
+    literals: SmallVec<[u32; 6]>,
+    arguments: SmallVec<[Argument; 32]>,
 }
 
 /// Where a result of a shared function is found.
@@ -52,11 +66,39 @@ enum Outcome {
     Result(u32),
 }
 
-/// A shared function and what its results are.
-#[derive(Clone, Debug)]
-struct Entry {
-    function: Option<FunctionRef>,
-    outcomes: Rc<[Outcome]>,
+/// A finished shared function.
+#[derive(Debug)]
+struct Rule {
+    key: Key,
+    /// The function, whose callees are [`SHARED`] and an index of `callees`; none where every
+    /// result is a constant or an argument.
+    function: Option<Function>,
+    /// The types of the function's results.
+    types: Arc<[Type]>,
+    callees: Vec<Arc<Rule>>,
+    outcomes: Vec<Outcome>,
+}
+
+/// The most rules that a process keeps: each is some kilobytes.
+const MOST: usize = 4096;
+
+/// The rules that this process has built.
+static KNOWN: LazyLock<RwLock<FxHashMap<Key, Arc<Rule>>>> = LazyLock::new(RwLock::default);
+
+/// The rule of this key, from those that are ready or by `build`.
+fn rule(key: Key, build: impl FnOnce(Key) -> Rule) -> Arc<Rule> {
+    // A panic while the lock is held leaves whole rules behind.
+    let known = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
+    if let Some(rule) = known.get(&key) {
+        return Arc::clone(rule);
+    }
+    drop(known);
+    let rule = Arc::new(build(key));
+    let mut known = KNOWN.write().unwrap_or_else(PoisonError::into_inner);
+    if known.len() < MOST {
+        known.insert(rule.key.clone(), Arc::clone(&rule));
+    }
+    rule
 }
 
 /// The shared functions of a module under construction.
@@ -65,8 +107,31 @@ pub(crate) struct Library(Rc<RefCell<Shelves>>);
 
 #[derive(Debug, Default)]
 struct Shelves {
-    known: FxHashMap<Key, Entry>,
-    module: Module,
+    known: FxHashMap<Key, (Arc<Rule>, Option<FunctionRef>)>,
+    /// The functions that were called, callees first.
+    rules: Vec<Arc<Rule>>,
+}
+
+impl Shelves {
+    /// The rule's function as one of this module.
+    fn reference(&mut self, rule: &Arc<Rule>) -> Option<FunctionRef> {
+        if let Some((_, reference)) = self.known.get(&rule.key) {
+            return reference.clone();
+        }
+        for callee in &rule.callees {
+            self.reference(callee);
+        }
+        let reference = rule.function.as_ref().map(|_| {
+            self.rules.push(Arc::clone(rule));
+            FunctionRef {
+                id: FunctionId(self.rules.len() as u32 - 1 | SHARED),
+                results: Arc::clone(&rule.types),
+            }
+        });
+        let entry = (Arc::clone(rule), reference.clone());
+        self.known.insert(rule.key.clone(), entry);
+        reference
+    }
 }
 
 /// A shared function's name and documentation.
@@ -92,63 +157,89 @@ impl Builder {
         arguments: &[(&'static str, Value)],
         build: impl FnOnce(&mut Self, &[Value]) -> [(&'static str, Value); RESULTS],
     ) -> [Value; RESULTS] {
-        let values: SmallVec<[Value; 24]> = arguments.iter().map(|&(_, v)| v).collect();
-        let Some(library) = self.library.clone() else {
+        if self.library.is_none() {
+            let values: SmallVec<[Value; 32]> = arguments.iter().map(|&(_, v)| v).collect();
             return build(self, &values).map(|(_, v)| v);
-        };
+        }
+        let key = (Cow::Borrowed(of.name), of.variant, &[][..]);
+        let mut results =
+            self.call_rule(key, (of.name, of.doc), arguments, |b, v| build(b, v).into());
+        let mut results = results.drain(..);
+        [(); RESULTS].map(|()| results.next().expect("one for each result"))
+    }
+
+    /// The same for as many results as there are; `key` names all that `build` depends on but the
+    /// arguments.
+    pub(crate) fn call_rule(
+        &mut self,
+        (name, variant, literals): (Cow<'static, str>, u32, &[u32]),
+        (readable, doc): (&'static str, &'static str),
+        arguments: &[(&'static str, Value)],
+        build: impl FnOnce(&mut Self, &[Value]) -> Vec<(&'static str, Value)>,
+    ) -> SmallVec<[Value; 16]> {
         let key = Key {
-            name: of.name,
-            variant: of.variant,
-            arguments: values.iter().map(|&v| Argument::of(self, v)).collect(),
+            name,
+            variant,
+            literals: literals.into(),
+            arguments: arguments
+                .iter()
+                .map(|&(_, v)| Argument::of(self, v))
+                .collect(),
         };
+        let library = self
+            .library
+            .as_ref()
+            .expect("the caller has seen a library");
         let known = library.0.borrow().known.get(&key).cloned();
-        let entry = known.unwrap_or_else(|| library.add(key, of, arguments, build));
-        let passed = |b: &Self, v: Value| matches!(Argument::of(b, v), Argument::Passed(_));
-        let results = match &entry.function {
+        let (rule, function) = known.unwrap_or_else(|| {
+            let rule = rule(key, |key| Rule::new(key, (readable, doc), arguments, build));
+            let reference = library.0.borrow_mut().reference(&rule);
+            (rule, reference)
+        });
+        let results = match &function {
             Some(function) => {
-                let inputs: SmallVec<[Value; 24]> = values
-                    .iter()
-                    .copied()
-                    .filter(|&v| passed(self, v))
+                let inputs: SmallVec<[Value; 32]> = (arguments.iter().zip(&rule.key.arguments))
+                    .filter(|(_, argument)| argument.passed().is_some())
+                    .map(|(&(_, v), _)| v)
                     .collect();
                 self.call(function, &inputs)
             }
             None => Vec::new(),
         };
-        let mut outcomes = entry.outcomes.iter();
-        [(); RESULTS].map(|()| match outcomes.next().expect("one for each result") {
-            Outcome::Constant(constant) => self.constant(constant.ty, constant.bits),
-            Outcome::Argument(i) => values[*i as usize],
-            Outcome::Result(i) => results[*i as usize],
-        })
+        (rule.outcomes.iter())
+            .map(|outcome| match *outcome {
+                Outcome::Constant(constant) => self.constant(constant.ty, constant.bits),
+                Outcome::Argument(i) => arguments[i as usize].1,
+                Outcome::Result(i) => results[i as usize],
+            })
+            .collect()
     }
 }
 
-impl Library {
-    /// Builds a function that is not yet known.
-    fn add<const RESULTS: usize>(
-        &self,
+impl Rule {
+    fn new(
         key: Key,
-        of: SharedFunction,
+        (name, doc): (&'static str, &'static str),
         arguments: &[(&'static str, Value)],
-        build: impl FnOnce(&mut Builder, &[Value]) -> [(&'static str, Value); RESULTS],
-    ) -> Entry {
-        let mut b = Builder::new(of.name, of.doc);
-        b.library = Some(self.clone());
+        build: impl FnOnce(&mut Builder, &[Value]) -> Vec<(&'static str, Value)>,
+    ) -> Self {
+        let library = Library::default();
+        let mut b = Builder::new(name, doc).with_library(library.clone());
         let mut places: FxHashMap<Value, u32> = FxHashMap::default();
-        let parameters: SmallVec<[Value; 24]> = (0u32..)
+        let parameters: SmallVec<[Value; 32]> = (0u32..)
             .zip(arguments.iter().zip(&key.arguments))
-            .map(|(i, (&(name, _), argument))| match argument {
-                Argument::Zero => b.f32(0.0),
-                Argument::One => b.f32(1.0),
-                Argument::MinusOne => b.f32(-1.0),
-                Argument::Passed(ty) => {
+            .map(|(i, (&(name, _), &argument))| match argument {
+                Argument::ZERO => b.f32(0.0),
+                Argument::ONE => b.f32(1.0),
+                Argument::MINUS_ONE => b.f32(-1.0),
+                passed => {
+                    let ty = passed.passed().expect("what is no constant is passed");
                     // Arguments without names of their own are told apart by their places.
                     let namesakes = arguments.iter().filter(|a| a.0 == name).count();
                     let parameter = if namesakes == 1 {
-                        b.param(name, *ty)
+                        b.param(name, ty)
                     } else {
-                        b.param(format!("{name}{i}"), *ty)
+                        b.param(format!("{name}{i}"), ty)
                     };
                     places.insert(parameter, i);
                     parameter
@@ -171,37 +262,100 @@ impl Library {
                 }
             })
             .collect();
-        let mut shelves = self.0.borrow_mut();
-        let function = (count > 0).then(|| {
-            let mut function = b.finish(&mut shelves.module);
-            function.id.0 |= SHARED;
-            function
+        let function = (count > 0).then(|| b.finished());
+        let callees = &library.0.borrow().rules;
+        Self::of(key, function, outcomes, |id| {
+            assert!(id.0 & SHARED != 0, "a library calls itself alone");
+            Arc::clone(&callees[(id.0 & !SHARED) as usize])
+        })
+    }
+
+    fn of(
+        key: Key,
+        mut function: Option<Function>,
+        outcomes: Vec<Outcome>,
+        callee: impl Fn(FunctionId) -> Arc<Self>,
+    ) -> Self {
+        let called = function.as_ref().map_or(Vec::new(), |f| f.callees());
+        if let Some(function) = &mut function {
+            function.redirect(|id| {
+                let place = called.iter().position(|&known| known == id);
+                FunctionId(place.expect("every callee is listed") as u32 | SHARED)
+            });
+            function.kept = Kept::shared();
+        }
+        Self {
+            key,
+            types: function.as_ref().map_or([].into(), |f| f.result_types()),
+            function,
+            callees: called.into_iter().map(callee).collect(),
+            outcomes,
+        }
+    }
+}
+
+impl Library {
+    /// A function that all functions of the module share, by a key that names all that it depends
+    /// on. `build` puts it into a module of its own, with what it calls.
+    pub(crate) fn function(
+        &self,
+        key: &str,
+        build: impl FnOnce(&mut Module) -> FunctionRef,
+    ) -> FunctionRef {
+        let key = |variant| Key {
+            name: Cow::Owned(key.to_owned()),
+            variant,
+            literals: SmallVec::new(),
+            arguments: SmallVec::new(),
+        };
+        let known = self.0.borrow().known.get(&key(0)).cloned();
+        if let Some((_, reference)) = known {
+            return reference.expect("a function has results");
+        }
+        let rule = rule(key(0), |whole| {
+            let mut module = Module::default();
+            let last = build(&mut module);
+            assert!(module.tables.is_empty(), "shared functions read no tables");
+            assert_eq!(last.id.index() + 1, module.functions.len(), "callees first");
+            let mut rules: Vec<Arc<Rule>> = Vec::new();
+            let mut functions = module.functions.into_iter();
+            let last = functions.next_back();
+            for (variant, function) in (1..).zip(functions) {
+                let callee = |id: FunctionId| Arc::clone(&rules[id.index()]);
+                let rule = Rule::of(key(variant), Some(function), Vec::new(), callee);
+                rules.push(Arc::new(rule));
+            }
+            Rule::of(whole, last, Vec::new(), |id| Arc::clone(&rules[id.index()]))
         });
-        let entry = Entry { function, outcomes };
-        shelves.known.insert(key, entry.clone());
-        entry
+        let reference = self.0.borrow_mut().reference(&rule);
+        reference.expect("a function has results")
     }
 
     /// Puts the library's functions before those of `module`, which call them.
     pub(crate) fn link(self, module: &mut Module) {
         let shelves = std::mem::take(&mut *self.0.borrow_mut());
-        let shared = shelves.module.functions;
-        let offset = shared.len() as u32;
-        let own = std::mem::replace(&mut module.functions, shared);
-        module.functions.extend(own);
-        for (index, function) in (0u32..).zip(&mut module.functions) {
-            for inst in &mut function.insts {
-                if let Inst::Call(id, _) | Inst::Fold { function: id, .. } = inst {
-                    let FunctionId(old) = *id;
-                    let is_shared = old & SHARED != 0;
-                    assert!(is_shared || index >= offset, "a library calls itself alone");
-                    *id = FunctionId(if is_shared {
-                        old & !SHARED
-                    } else {
-                        old + offset
-                    });
-                }
+        let offset = shelves.rules.len() as u32;
+        let place = |rule: &Rule| match &shelves.known[&rule.key] {
+            (_, Some(reference)) => FunctionId(reference.id.0 & !SHARED),
+            (_, None) => unreachable!("a callee is a function"),
+        };
+        let own = std::mem::take(&mut module.functions);
+        for rule in &shelves.rules {
+            let mut function = rule.function.clone().expect("only functions are listed");
+            if !rule.callees.is_empty() {
+                function.redirect(|id| place(&rule.callees[(id.0 & !SHARED) as usize]));
             }
+            module.functions.push(function);
+        }
+        for mut function in own {
+            function.redirect(|FunctionId(old)| {
+                FunctionId(if old & SHARED != 0 {
+                    old & !SHARED
+                } else {
+                    old + offset
+                })
+            });
+            module.functions.push(function);
         }
     }
 }

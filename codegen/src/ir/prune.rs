@@ -1,10 +1,10 @@
 //! Removing what no result needs: instructions of a function, functions and tables of a module.
 
-use super::{Function, FunctionId, Inst, Module, Value};
+use super::{Body, Function, FunctionId, Inst, Module, Value};
 use rustc_hash::FxHashMap;
 
 /// The function without the instructions that no result needs; parameters stay.
-pub(super) fn without_dead_code(function: Function) -> Function {
+pub(super) fn without_dead_code(function: Body) -> Body {
     let mut live = vec![false; function.insts.len()];
     for &(_, value) in &function.results {
         live[value.index()] = true;
@@ -15,8 +15,12 @@ pub(super) fn without_dead_code(function: Function) -> Function {
             function.insts[index].operands(|v| live[v.index()] = true);
         }
     }
+    if live.iter().all(|&l| l) {
+        return function;
+    }
+    let count = live.iter().filter(|&&l| l).count();
     let mut moved = vec![Value(0); live.len()];
-    let (mut insts, mut types) = (Vec::new(), Vec::new());
+    let (mut insts, mut types) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for (index, mut inst) in function.insts.into_iter().enumerate() {
         if live[index] {
             renumber(&mut inst, |v| moved[v.index()]);
@@ -25,7 +29,7 @@ pub(super) fn without_dead_code(function: Function) -> Function {
             types.push(function.types[index]);
         }
     }
-    Function {
+    Body {
         insts,
         types,
         names: (function.names.into_iter())
@@ -36,6 +40,26 @@ pub(super) fn without_dead_code(function: Function) -> Function {
             .map(|(n, v)| (n, moved[v.index()]))
             .collect(),
         ..function
+    }
+}
+
+impl Function {
+    /// Makes every call one of the function that `to` gives for its callee. A body that stays as it
+    /// is stays shared.
+    pub(super) fn redirect(&mut self, to: impl Fn(FunctionId) -> FunctionId) {
+        let callee = |inst: &Inst| match inst {
+            Inst::Call(f, _) | Inst::Fold { function: f, .. } => Some(*f),
+            _ => None,
+        };
+        if (self.insts.iter()).any(|inst| callee(inst).is_some_and(|f| to(f) != f)) {
+            let kept = self.kept.of_copy();
+            for inst in &mut self.insts {
+                if let Inst::Call(f, _) | Inst::Fold { function: f, .. } = inst {
+                    *f = to(*f);
+                }
+            }
+            self.kept = kept;
+        }
     }
 }
 
@@ -71,11 +95,7 @@ impl Module {
         let mut taken: FxHashMap<String, u32> = FxHashMap::default();
         // The entry keeps its name.
         for function in self.functions.iter_mut().rev() {
-            for inst in &mut function.insts {
-                if let Inst::Call(f, _) | Inst::Fold { function: f, .. } = inst {
-                    *f = moved[f.index()];
-                }
-            }
+            function.redirect(|f| moved[f.index()]);
             let count = taken.entry(function.name.clone()).or_default();
             *count += 1;
             if *count > 1 {
@@ -113,9 +133,16 @@ impl Module {
                 table.name = format!("{}_{count}", table.name);
             }
         }
-        for inst in self.functions.iter_mut().flat_map(|f| &mut f.insts) {
-            if let Inst::Load(table, _) = inst {
-                *table = moved[*table as usize].expect("a table that is read");
+        let place = |table: u32| moved[table as usize].expect("a table that is read");
+        let is_moved =
+            |inst: &Inst| matches!(inst, Inst::Load(table, _) if place(*table) != *table);
+        for function in &mut self.functions {
+            if function.insts.iter().any(is_moved) {
+                for inst in &mut function.insts {
+                    if let Inst::Load(table, _) = inst {
+                        *table = place(*table);
+                    }
+                }
             }
         }
     }

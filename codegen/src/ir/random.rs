@@ -57,7 +57,7 @@ fn fill(
             }
             1 if !callees.is_empty() => {
                 let (callee, params) = &callees[choices.next(callees.len())];
-                if params[0] != Type::U32 || !params[1..].starts_with(&callee.results) {
+                if params[0] != Type::U32 || !params[1..].starts_with(&callee.results[..]) {
                     continue;
                 }
                 let arguments: Vec<_> = params[1..]

@@ -66,6 +66,7 @@ impl<'a> Compiler<'a> {
             catalogue: self.catalogue,
             options,
             live: self.live.clone(),
+            order: self.order.clone(),
             crossed: self.crossed.clone(),
             literal: self.literal.clone(),
             functions: Default::default(),

@@ -22,6 +22,10 @@ impl Lower<'_> {
         key: &str,
         build: impl FnOnce(&mut Module) -> FunctionRef,
     ) -> FunctionRef {
+        if self.in_rule {
+            let library = self.algebra.b.library().expect("a rule has a library");
+            return library.function(key, build);
+        }
         if let Some(function) = self.compiler.functions.borrow().get(key) {
             return function.clone();
         }
@@ -180,6 +184,11 @@ impl Lower<'_> {
             Literal::Stops(stops) => stops,
             other => panic!("{port} of {} is a ramp: {other:?}", node.spec.name),
         }
+    }
+
+    /// Whether the footprints of sources are asked for: [`Self::source_footprint`].
+    pub fn measures(&self) -> bool {
+        self.measures
     }
 
     /// Reports the footprint of a source, in wavelengths of its dominant detail: `auto` and `split`

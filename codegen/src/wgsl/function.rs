@@ -4,7 +4,7 @@ mod body;
 mod local;
 
 use super::expression::{level, push_number};
-use super::name::Scope;
+use super::name::{Scope, camel, identifier};
 use super::part::{Item, Part, split};
 use super::statement::{self, Statements, choose, is_single};
 use crate::ir::{Function, FunctionId, Inst, Module, Type, Value};
@@ -23,6 +23,46 @@ pub(super) struct Signature {
     pub(super) results: Option<String>,
     /// The names of the results.
     pub(super) fields: Vec<String>,
+    /// The name as that of a type.
+    pub(super) camel: String,
+}
+
+impl Signature {
+    /// Of the texture's function.
+    pub(super) fn of_entry(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            packed: None,
+            results: None,
+            fields: Vec::new(),
+            camel: camel(name),
+        }
+    }
+
+    /// Of a function of this name.
+    pub(super) fn new(name: String, function: &Function, globals: &mut Scope) -> Self {
+        let camel = camel(&name);
+        Self::spelled(name, camel, function, globals)
+    }
+
+    /// The same, where the name as that of a type is known.
+    pub(super) fn spelled(
+        name: String,
+        camel: String,
+        function: &Function,
+        globals: &mut Scope,
+    ) -> Self {
+        let mut fields = Scope::default();
+        Self {
+            packed: is_packed(function.params.len()).then(|| globals.take(format!("{camel}Args"))),
+            results: (function.results.len() > 1).then(|| globals.take(camel.clone())),
+            fields: (function.results.iter())
+                .map(|(field, _)| fields.take(identifier(field)))
+                .collect(),
+            name,
+            camel,
+        }
+    }
 }
 
 /// What all functions of a shader share.
@@ -85,8 +125,21 @@ struct Writer<'c, 'a> {
     hidden: Option<(Value, u32)>,
 }
 
+/// What the text of a function takes beside its name.
+#[derive(Debug)]
+pub(super) struct Written {
+    /// The names of its locals.
+    pub(super) locals: Vec<String>,
+    /// How many parts it has.
+    pub(super) parts: usize,
+}
+
 /// Appends function `id` with its structs and parts.
-pub(super) fn write(context: &mut Context<'_>, id: FunctionId, entry: Option<&EntryText>) {
+pub(super) fn write(
+    context: &mut Context<'_>,
+    id: FunctionId,
+    entry: Option<&EntryText>,
+) -> Written {
     let module = context.module;
     let function = module.function(id);
     let size = function.insts.len();
@@ -109,6 +162,10 @@ pub(super) fn write(context: &mut Context<'_>, id: FunctionId, entry: Option<&En
     };
     let params = writer.name_parameters();
     writer.whole(id, &params);
+    Written {
+        locals: writer.strings,
+        parts: writer.part_signatures.len(),
+    }
 }
 
 impl<'a> Writer<'_, 'a> {
@@ -230,12 +287,13 @@ impl<'a> Writer<'_, 'a> {
     }
 
     fn part(&mut self, id: FunctionId, number: usize, total: usize, part: &Part, all: &[Part]) {
-        let base = self.signature(id).name.clone();
+        let whole = self.signature(id);
+        let base = whole.name.clone();
+        let camel = format!("{}Part{}", whole.camel, number + 1);
         let name = self
             .context
             .globals
             .take(format!("{base}_part_{}", number + 1));
-        let camel = super::name::camel(&name);
         let packed = (part.inputs.len() > PARAMETERS)
             .then(|| self.context.globals.take(format!("{camel}Args")));
         let results = (part.outputs.len() > 1).then(|| self.context.globals.take(camel));
@@ -295,6 +353,7 @@ impl<'a> Writer<'_, 'a> {
             packed,
             results,
             fields: Vec::new(),
+            camel: String::new(),
         });
     }
 
@@ -384,6 +443,6 @@ pub(super) fn push_doc(out: &mut String, doc: &str) {
 }
 
 /// Whether a function of this many parameters takes them packed into a struct.
-pub(super) fn is_packed(parameters: usize) -> bool {
+fn is_packed(parameters: usize) -> bool {
     parameters > PARAMETERS
 }

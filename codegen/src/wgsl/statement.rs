@@ -112,7 +112,7 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
                 !operands.iter().all(|&v| function.constant(v).is_some()),
             ),
             Inst::Load(..) => (24, true),
-            Inst::Call(callee, _) => (module.function(*callee).name.len() as u32 + 12, false),
+            Inst::Call(callee, _) => (module.function(*callee).stem().len() as u32 + 12, false),
             Inst::Fold {
                 function: callee,
                 count: turns,
@@ -124,7 +124,7 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
                     inlined[value.index()] = false;
                     captures.iter().for_each(|v| inlined[v.index()] = false);
                 }
-                (module.function(*callee).name.len() as u32 + 12, false)
+                (module.function(*callee).stem().len() as u32 + 12, false)
             }
             Inst::Result(of, _) => {
                 let call = function.inst(*of);

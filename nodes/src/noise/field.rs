@@ -1,8 +1,31 @@
 //! The field of a filtered source, and the signal that it is at a position with a spread.
 
-use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, SharedFunction, Value};
 use mipless_codegen::moments::{Mode, Signal};
+use mipless_codegen::{Lower, PartNames};
+
+/// The names of a position's parts as parameters of rules.
+pub(crate) const X: PartNames = [
+    "cell_x",
+    "x",
+    "x_gx",
+    "x_gy",
+    "x_hxx",
+    "x_hxy",
+    "x_hyy",
+    "x_private",
+];
+/// The same of its second coordinate.
+pub(crate) const Y: PartNames = [
+    "cell_y",
+    "y",
+    "y_gx",
+    "y_gy",
+    "y_hxx",
+    "y_hxy",
+    "y_hyy",
+    "y_private",
+];
 
 /// The covariance of a position within the footprint, in squared units of the position.
 #[derive(Clone, Copy, Debug)]
@@ -22,16 +45,34 @@ impl Spread {
         let [x, y] = position else {
             panic!("a position has two coordinates")
         };
-        let (vx, vy) = (x.variance(b), y.variance(b));
-        let covariance = x.covariance(b, y).total;
-        let of = SharedFunction {
+        let of = |variant| SharedFunction {
             name: "spread",
-            variant: 0,
+            variant,
             doc: "The covariance of a position, limited, and its eigenvalues.",
         };
-        let inputs = [("xx", vx), ("xy", covariance), ("yy", vy)];
-        let [xx, xy, yy, major, minor] =
-            b.shared(of, &inputs, |b, v| limited([v[0], v[1], v[2]], b));
+        let [xx, xy, yy, major, minor] = if x.shared.is_empty() && y.shared.is_empty() {
+            let parts = |names: PartNames, signal: &Signal| {
+                let ([gx, gy], [hxx, hxy, hyy]) = (signal.g, signal.h);
+                let parts = [gx, gy, hxx, hxy, hyy, signal.private];
+                [2, 3, 4, 5, 6, 7].map(|i| (names[i], parts[i - 2]))
+            };
+            let inputs = [parts(X, x), parts(Y, y)];
+            b.shared(of(1), inputs.as_flattened(), |b, v| {
+                let zero = b.f32(0.0);
+                let [x, y] = [0, 6].map(|i| Signal {
+                    g: [v[i], v[i + 1]],
+                    h: [v[i + 2], v[i + 3], v[i + 4]],
+                    private: v[i + 5],
+                    ..Signal::certain(b, zero)
+                });
+                limited(b, &x, &y)
+            })
+        } else {
+            let (vx, vy) = (x.variance(b), y.variance(b));
+            let covariance = x.covariance(b, y).total;
+            let inputs = [("xx", vx), ("xy", covariance), ("yy", vy)];
+            b.shared(of(0), &inputs, |b, v| limits(b, [v[0], v[1], v[2]]))
+        };
         Self {
             covariance: [xx, xy, yy],
             eigenvalues: [major, minor],
@@ -39,8 +80,15 @@ impl Spread {
     }
 }
 
+/// The covariance of two signals, no larger than the widest, and its eigenvalues.
+fn limited(b: &mut Builder, x: &Signal, y: &Signal) -> [(&'static str, Value); 5] {
+    let (vx, vy) = (x.variance(b), y.variance(b));
+    let covariance = x.covariance(b, y).total;
+    limits(b, [vx, covariance, vy])
+}
+
 /// A covariance, no larger than the widest, and its eigenvalues.
-fn limited(covariance: [Value; 3], b: &mut Builder) -> [(&'static str, Value); 5] {
+fn limits(b: &mut Builder, covariance: [Value; 3]) -> [(&'static str, Value); 5] {
     let [vx, _, vy] = covariance;
     let limit = b.f32(WIDEST * WIDEST);
     // One factor for all three keeps the shape.

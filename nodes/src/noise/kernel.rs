@@ -1,10 +1,11 @@
 //! The choice of a kernel at each lattice point.
 
-use super::field::{Field, Spread};
+use super::field::Spread;
 use super::lattice::{self, Octaves};
 use super::perlin::{self, Kind};
-use mipless_codegen::Lower;
+use super::source::Affine;
 use mipless_codegen::moments::Signal;
+use mipless_codegen::{Lower, NodeRule};
 use mipless_graph::Node;
 
 /// What is at each lattice point.
@@ -26,23 +27,67 @@ impl Kernel {
         }
     }
 
-    /// The filtered sum of octaves at a position in cells of the first octave; unit variance of
-    /// the first octave.
-    pub(crate) fn filtered(
+    /// The filtered sum of octaves at a position in cells of the first octave: pivot + amplitude · X,
+    /// where the first octave of X has variance 1 and |X| is at most `extent`. What the filter
+    /// removed is private.
+    pub(crate) fn signal(
         self,
         lower: &mut Lower<'_>,
         position: &[Signal],
         octaves: Octaves,
-    ) -> Field {
-        match self {
-            Self::Gaussian => lattice::filtered(lower, position, octaves),
-            Self::Quintic(kind) => perlin::filtered(lower, position, kind, octaves),
-        }
+        shape: Affine,
+    ) -> Signal {
+        let Octaves {
+            count,
+            part,
+            lacunarity,
+            diminish,
+            period,
+            ..
+        } = octaves;
+        let [x, y] = position else {
+            panic!("a position has two coordinates")
+        };
+        let literals = [
+            count,
+            part.to_bits(),
+            lacunarity.to_bits(),
+            diminish.to_bits(),
+            period,
+        ];
+        let of = NodeRule {
+            name: match self {
+                Self::Gaussian => "lattice_noise",
+                Self::Quintic(kind) => kind.rule(),
+            },
+            doc: "A filtered sum of octaves, as a signal.",
+            literals: &literals,
+        };
+        let b = lower.b();
+        let seed = octaves.scrambled_seed(b);
+        let numbers = [
+            ("seed", seed),
+            ("amplitude", shape.amplitude),
+            ("pivot", shape.pivot),
+        ];
+        let signals = [(super::field::X, x), (super::field::Y, y)];
+        lower.rule(of, &signals, &numbers, |lower, position, numbers| {
+            let field = match self {
+                Self::Gaussian => lattice::filtered(lower, position, octaves, numbers[0]),
+                Self::Quintic(kind) => perlin::filtered(lower, position, kind, octaves, numbers[0]),
+            };
+            let unit = field.at(lower, position);
+            let b = lower.b();
+            unit.scale(b, numbers[1]).offset(b, numbers[2])
+        })
     }
 
     /// Reports what the footprint is to a source at this position, in cells of its first octave,
     /// which dominates.
     pub(crate) fn report(self, lower: &mut Lower<'_>, position: &[Signal]) {
+        if !lower.measures() {
+            return;
+        }
         let wavelength = match self {
             Self::Gaussian => lattice::WAVELENGTH,
             Self::Quintic(kind) => kind.wavelength(),

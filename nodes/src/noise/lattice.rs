@@ -112,18 +112,24 @@ impl Octaves {
         (whole + part * part).sqrt()
     }
 
+    /// The scrambled seed, which the state of the first octave holds.
+    pub(super) fn scrambled_seed(self, b: &mut Builder) -> Value {
+        let seed = b.u32(self.seed as u32);
+        b.scramble(seed)
+    }
+
     /// The sum over octaves of a noise of variance 1; `octave` is the body of the fold over them.
     pub(super) fn sum(
         self,
         lower: &mut Lower<'_>,
         octave: &FunctionRef,
-        position: &[Signal],
+        (position, seed): (&[Signal], Value),
         captures: &[Value],
         left: Option<Left>,
     ) -> Field {
         let mode = lower.mode();
         let parts = parts(mode);
-        let sums = self.fold(lower, octave, position, parts, captures, left);
+        let sums = self.fold(lower, octave, (position, seed), parts, captures, left);
         let zero = lower.b().f32(0.0);
         let at = |i: usize| if i < parts { sums[i] } else { zero };
         Field {
@@ -140,7 +146,7 @@ impl Octaves {
         self,
         lower: &mut Lower<'_>,
         octave: &FunctionRef,
-        position: &[Signal],
+        (position, seed): (&[Signal], Value),
         parts: usize,
         captures: &[Value],
         left: Option<Left>,
@@ -165,8 +171,6 @@ impl Octaves {
             init.push(cell);
             init.push(fraction);
         }
-        let seed = b.u32(self.seed as u32);
-        let seed = b.scramble(seed);
         let amplitude = init.len() + 1;
         init.extend([b.f32(1.0), b.f32(1.0), seed]);
         if self.tiles() {
@@ -190,7 +194,12 @@ pub(super) fn parts(mode: Mode) -> usize {
 
 /// The filtered sum of octaves at a position in cells of the first octave; unit variance of the
 /// first octave.
-pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octaves) -> Field {
+pub(crate) fn filtered(
+    lower: &mut Lower<'_>,
+    position: &[Signal],
+    octaves: Octaves,
+    seed: Value,
+) -> Field {
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position);
     let Octaves {
@@ -216,7 +225,7 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
         captures.extend([b.add(major, minor), b.mul(major, minor)]);
     }
     let left = (mode.filters()).then(|| octaves.left(lower.b(), spread.eigenvalues[1]));
-    octaves.sum(lower, &octave, position, &captures, left)
+    octaves.sum(lower, &octave, (position, seed), &captures, left)
 }
 
 /// The part of an octave's state that goes from octave to octave: position, frequency, amplitude

@@ -3,7 +3,7 @@
 use super::kernel::Kernel;
 use super::lattice::Octaves;
 use super::octaves::tiled_octaves;
-use super::source::EXTENT;
+use super::source::{Affine, EXTENT};
 use mipless_codegen::Lower;
 use mipless_codegen::moments::Signal;
 use mipless_graph::Node;
@@ -40,9 +40,11 @@ pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) 
                 .wrapping_add(k.wrapping_mul(0x9e37_79b9) as i32),
             ..octaves
         };
-        let field = kernel.filtered(lower, &position, one);
+        let shape = Affine::unit(lower.b());
         layers.push(Layer {
-            noise: field.at(lower, &position).with_range([-EXTENT, EXTENT]),
+            noise: kernel
+                .signal(lower, &position, one, shape)
+                .with_range([-EXTENT, EXTENT]),
             amplitude: octaves.diminish.powi(k as i32),
             share: if k < octaves.count { 1.0 } else { octaves.part },
         });

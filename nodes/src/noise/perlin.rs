@@ -96,6 +96,14 @@ impl Kind {
         }
     }
 
+    /// The name of its rule.
+    pub(crate) const fn rule(self) -> &'static str {
+        match self {
+            Self::Gradient => "perlin_noise",
+            Self::Value => "value_noise",
+        }
+    }
+
     const fn name(self) -> &'static str {
         match self {
             Self::Gradient => "perlin",
@@ -111,6 +119,7 @@ pub(crate) fn filtered(
     position: &[Signal],
     kind: Kind,
     octaves: Octaves,
+    seed: Value,
 ) -> Field {
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position);
@@ -131,7 +140,7 @@ pub(crate) fn filtered(
         captures.extend(spread.covariance);
         captures.extend(spread.eigenvalues);
     }
-    octaves.sum(lower, &octave, position, &captures, None)
+    octaves.sum(lower, &octave, (position, seed), &captures, None)
 }
 
 /// One octave of the filtered noise, the body of a fold.

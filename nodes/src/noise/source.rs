@@ -1,7 +1,10 @@
 //! The ports that noises share, and what they do to the field.
 
 use super::field::Field;
+use super::kernel::Kernel;
+use super::lattice::Octaves;
 use mipless_codegen::Lower;
+use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::moments::Signal;
 use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
 
@@ -125,6 +128,58 @@ fn scaled_by_frequency(lower: &mut Lower<'_>, node: &Node, port: &str) -> Vec<Si
 
 /// No noise leaves this many standard deviations in practice (once in 10⁶ points of a Gaussian).
 pub(crate) const EXTENT: f32 = 5.0;
+
+/// What is added to a noise and what multiplies it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Affine {
+    /// The factor.
+    pub(crate) amplitude: Value,
+    /// The term.
+    pub(crate) pivot: Value,
+}
+
+impl Affine {
+    /// The noise itself.
+    pub(crate) fn unit(b: &mut Builder) -> Self {
+        Self {
+            amplitude: b.f32(1.0),
+            pivot: b.f32(0.0),
+        }
+    }
+}
+
+/// A sum of octaves of a lattice as the node's output: pivot + amplitude · `factor` · X, with |X| at
+/// most `extent`.
+pub(crate) fn octaves_of(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    (kernel, octaves): (Kernel, Octaves),
+    (factor, extent): (f32, f32),
+) -> Vec<Signal> {
+    let position = position(lower, node);
+    kernel.report(lower, &position);
+    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+    let b = lower.b();
+    if !(amplitude.is_certain(b) && pivot.is_certain(b)) {
+        let shape = Affine::unit(b);
+        let unit = kernel.signal(lower, &position, octaves, shape);
+        return scaled(lower, node, unit, (factor, extent));
+    }
+    let factor = b.f32(factor);
+    let amplitude = amplitude.scale(b, factor);
+    // The range alone: nothing of this is built.
+    let range = Signal::constant(b, 0.0)
+        .with_range([-extent, extent])
+        .scale(b, amplitude.mean)
+        .add(b, &pivot)
+        .range;
+    let shape = Affine {
+        amplitude: amplitude.mean,
+        pivot: pivot.mean,
+    };
+    let signal = kernel.signal(lower, &position, octaves, shape);
+    vec![signal.with_range(range)]
+}
 
 /// The field of this standard deviation as a signal: pivot + amplitude/4 · X.
 pub(crate) fn shaped(

@@ -75,7 +75,15 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], octaves: Octa
         Mode::Point => Vec::new(),
         _ => spread.captures(),
     };
-    let sums = octaves.fold(lower, &octave, position, parts(mode), &captures, None);
+    let seed = octaves.scrambled_seed(lower.b());
+    let sums = octaves.fold(
+        lower,
+        &octave,
+        (position, seed),
+        parts(mode),
+        &captures,
+        None,
+    );
     at(lower, position, &sums)
 }
 

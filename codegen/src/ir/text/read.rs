@@ -1,6 +1,8 @@
 //! Reading the text form.
 
-use crate::ir::{Constant, Function, FunctionId, Inst, Module, Op, Parameter, Table, Type, Value};
+use crate::ir::{
+    Body, Constant, Function, FunctionId, Inst, Module, Op, Parameter, Table, Type, Value,
+};
 use rustc_hash::FxHashMap;
 use std::fmt;
 
@@ -261,15 +263,12 @@ impl Reader {
                 }
                 let doc = cursor.quoted()?;
                 cursor.expect("{")?;
-                self.open = Some(Function {
-                    name,
+                let body = Body {
                     doc,
                     params,
-                    insts: Vec::new(),
-                    types: Vec::new(),
-                    names: FxHashMap::default(),
-                    results: Vec::new(),
-                });
+                    ..Body::default()
+                };
+                self.open = Some(Function::new(name, body));
             }
             word => return Err(format!("expected `table` or `function`, found `{word}`")),
         }

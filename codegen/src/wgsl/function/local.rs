@@ -109,31 +109,34 @@ impl Writer<'_, '_> {
 
     fn make_name(&mut self, value: Value) -> u32 {
         let function = self.function;
-        let text = if let Some(name) = function.names.get(&value) {
-            Some(name.clone())
-        } else {
-            let (call, of_call) = match function.inst(value) {
-                Inst::Result(of, _) if is_single(self.context.module, function.inst(*of)) => {
-                    (*of, false)
+        let text =
+            if let Some(name) = function.names.get(&value) {
+                Some(name.clone())
+            } else {
+                let (call, of_call) = match function.inst(value) {
+                    Inst::Result(of, _) if is_single(self.context.module, function.inst(*of)) => {
+                        (*of, false)
+                    }
+                    Inst::Call(..) | Inst::Fold { .. } => (value, true),
+                    _ => (value, false),
+                };
+                match function.inst(call) {
+                    Inst::Call(callee, _)
+                    | Inst::Fold {
+                        function: callee, ..
+                    } => {
+                        let stem = if of_call {
+                            self.common_stem(value, *callee)
+                        } else {
+                            None
+                        };
+                        Some(stem.unwrap_or_else(|| {
+                            self.context.module.function(*callee).stem().to_owned()
+                        }))
+                    }
+                    _ => None,
                 }
-                Inst::Call(..) | Inst::Fold { .. } => (value, true),
-                _ => (value, false),
             };
-            match function.inst(call) {
-                Inst::Call(callee, _)
-                | Inst::Fold {
-                    function: callee, ..
-                } => {
-                    let stem = if of_call {
-                        self.common_stem(value, *callee)
-                    } else {
-                        None
-                    };
-                    Some(stem.unwrap_or_else(|| self.context.module.function(*callee).name.clone()))
-                }
-                _ => None,
-            }
-        };
         if let Some(text) = text {
             let name = self.fresh(&text);
             self.strings.push(name);
