@@ -1,11 +1,13 @@
 //! `fractal3d`: a sum of octaves of lattice noise in space.
 
-use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
-use crate::noise::source::{AMPLITUDE, EXTENT, FREQUENCY, PIVOT, POSITION, SEED, place, scaled};
-use crate::noise::volume;
-use crate::noise3d::DEVIATION;
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
+use crate::noise::source::{
+    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, scaled,
+};
+use crate::noise::volume::{self, Kind};
+use crate::noise3d::deviation;
 use mipless_codegen::NodeDef;
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Type};
+use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "fractal3d",
@@ -24,12 +26,10 @@ static SPEC: NodeSpec = NodeSpec {
             Bruneton & Neyret 2012 §2.2.",
     },
     inputs: &[
-        POSITION, FREQUENCY, AMPLITUDE, PIVOT, SEED, OCTAVES, LACUNARITY, DIMINISH,
+        POSITION, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
     ],
     output: OutputType::Exactly(Type::Float),
-    class: |_| Behaviour::Gaussian {
-        deviation: DEVIATION,
-    },
+    class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "granite",
         "nodes": { "fractal3d": { "type": "fractal3d", "inputs": { "frequency": 4, "octaves": 4, "pivot": 0.5 } } },
         "outputs": { "out": { "node": "fractal3d" } } }"#,
@@ -39,9 +39,10 @@ static SPEC: NodeSpec = NodeSpec {
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
     lower: |lower, node| {
-        let octaves = octaves(lower, node);
+        let octaves = tiled_octaves(lower, node);
         let position = place(lower, node);
-        let unit = volume::filtered(lower, &position, octaves);
+        let kind = Kind::of(lower, node);
+        let unit = volume::filtered(lower, &position, kind, octaves);
         scaled(lower, node, unit, (0.25, EXTENT * octaves.sd()))
     },
 };

@@ -39,8 +39,10 @@ static SPEC: NodeSpec = NodeSpec {
             those of the field filtered by Σ, in closed form with T = a²I + Σ in place of a²I; the \
             remainder is the ensemble variance F(0) − F(Σ) less the part of the derivatives. \
             `quintic` is filtered by the polynomials of w up to a standard deviation of 0.16 cells \
-            and from 0.1 cells on by the window (1 + 3.544t² − 4.86t⁴) e^{−t²/2b²}, b = 0.3284, \
-            in place of w, which any Σ filters in closed form.",
+            and from 0.1 cells on by (0.971 + P(d_x) + P(d_y)) e^{−d·d/2b²}, b = 0.3625, \
+            P(t) = 3.067t² − 7.744t⁴ + 3.449t⁶, in place of w(d_x) w(d_y), which any Σ filters in \
+            closed form. The spectrum is one band around the dominant wavelength, falling to 0 \
+            at frequency 0 with its fourth power (`quintic`: its square).",
         accuracy: "Filtered mean, RMS over positions, in standard deviations of the noise: within 0.007 \
             up to footprints of half a cell, 0.024 beyond, and 0.016 for footprints of 8:1 at any \
             angle, held by `nodes/tests/noise.rs` against dense integration. At most 0.02 is \
@@ -51,9 +53,9 @@ static SPEC: NodeSpec = NodeSpec {
             a third of a cell 0.83 to 1.36, by half a cell 0.96 to 1.09. Cost, in kernels: 3×3 \
             unfiltered; filtered, four columns across the footprint's longer side by three rows up \
             to 0.12 cells, four up to 0.78, then 4.6 √(0.149 + σ²) up to 32, none once it has \
-            faded (1.24 cells, if round). `quintic`: the window is 0.029 standard deviations from \
-            w; filtered mean within 0.035 at any round footprint and within 0.06 at 8:1, at any \
-            angle (`nodes/tests/perlin.rs`); its remainder is that of random lattices, while the \
+            faded (1.24 cells, if round). `quintic`: the fit is 0.023 standard deviations from \
+            the noise; filtered mean within 0.035 at any round footprint and within 0.025 at 8:1, \
+            at any angle (`nodes/tests/perlin.rs`); its remainder is that of random lattices, while the \
             noise is 0 at every lattice point; 2×2 kernels up to 0.1 cells, then from 3×3 on, each \
             about twice as dear.",
         references: "Perlin 1985 (lattice noise); Perlin 2002, *Improving Noise* (the quintic \

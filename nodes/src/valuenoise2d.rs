@@ -35,11 +35,12 @@ static SPEC: NodeSpec = NodeSpec {
         statistics: "Mean `pivot`, standard deviation 0.226 · amplitude over random lattices and \
             positions (0.289 at a lattice point, 0.151 in the middle of a cell); max |CDF − Φ| is \
             0.030. Over a footprint of covariance Σ (in cells): up to a standard deviation of \
-            0.16 cells by the polynomials of w, from 0.1 cells on by (1 + 3.544t² − 4.86t⁴) \
-            e^{−t²/2b²}, b = 0.3284, in place of w, which any Σ filters in closed form. The \
+            0.16 cells by the polynomials of w, from 0.1 cells on by (1.003 + P(d_x) + P(d_y)) \
+            e^{−d·d/2b²}, b = 0.3775, P(t) = 2.333t² − 6.760t⁴ + 3.180t⁶, in place of \
+            w(d_x) w(d_y), which any Σ filters in closed form. The \
             remainder is the ensemble variance less the part of the derivatives.",
-        accuracy: "Filtered mean within 0.03 standard deviations of the noise, and within 0.06 for \
-            footprints of 8:1 at any angle; held by `nodes/tests/perlin.rs`. The remainder is that \
+        accuracy: "Filtered mean within 0.018 standard deviations of the noise, for footprints of 8:1 \
+            at any angle too, up to two wavelengths; held by `nodes/tests/perlin.rs`. The remainder is that \
             of random lattices: what a lattice line or a cell’s middle adds to it is not seen.",
         references: "Perlin 2002, *Improving Noise* (the fade); Bruneton & Neyret 2012 §2.2; \
             Hermite–Parseval identity for the remainder.",

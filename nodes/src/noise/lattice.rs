@@ -14,6 +14,7 @@ mod row;
 use super::field::{Field, Spread};
 use super::hash::NEXT_OCTAVE;
 use address::{Address, wrapped_cell};
+pub(super) use filtered::derivatives;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Type, Value};
 use mipless_codegen::moments::{Mode, Signal};
@@ -188,7 +189,7 @@ impl Octaves {
 
 /// How many numbers a mode needs of a field: the mean, the gradient, the Hessian.
 pub(super) fn parts(mode: Mode) -> usize {
-    let derivatives = filtered::derivatives(mode);
+    let derivatives = derivatives(mode);
     (derivatives + 1) * (derivatives + 2) / 2
 }
 

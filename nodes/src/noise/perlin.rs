@@ -7,15 +7,16 @@
 //! # How it is filtered
 //! - Footprints narrow against a cell ([`near`]) act on the window's polynomials: E f(t + ξ) =
 //!   f + ½Cf″ + ⅛C²f⁗, exact but for the jumps of w‴ at the lattice lines.
-//! - Wider ones ([`window`]) replace w by a polynomial times a Gaussian, which any Gaussian
-//!   footprint filters in closed form; between 0.1 and 0.16 cells the two are mixed.
+//! - Wider ones ([`window`]) replace the product of the w by a polynomial times a Gaussian, which
+//!   any Gaussian footprint filters in closed form ([`fit`]); between 0.1 and 0.16 cells the two are mixed.
 //! - What the filter removed comes from the energy spectrum ([`energy`]).
 
-mod energy;
+pub(super) mod energy;
+pub(super) mod fit;
 mod grid;
 mod near;
-mod point;
-mod profile;
+pub(super) mod point;
+pub(super) mod profile;
 mod window;
 
 use super::field::{Field, Spread};
@@ -23,6 +24,7 @@ use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
 use super::lattice::{Octave, Octaves, parts};
 use super::remainder::{remainder, share};
 use energy::{Footprint, energies};
+use fit::{Fit, Shape};
 use grid::Grid;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Value};
@@ -39,13 +41,13 @@ const FADE: [f32; 2] = [0.03, 0.06];
 
 /// The standard deviations, in cells, from which and up to which the polynomials of the window
 /// give way to its fit.
-const HANDOVER: [f32; 2] = [0.1, 0.16];
+pub(super) const HANDOVER: [f32; 2] = [0.1, 0.16];
 
 /// A kernel is dropped where its envelope is this small against the unfiltered noise: −2 ln 0.004.
 const NEGLIGIBLE_LN: f32 = 11.0;
 
 /// The most lattice rows or columns that are summed; footprints that need more fade.
-const MOST: f32 = 48.0;
+const MOST: f32 = 112.0;
 
 /// The sums over kernels, in the order of [`profile::DERIVATIVES`].
 const NAMES: [&str; 6] = ["mean", "dx", "dy", "dxx", "dxy", "dyy"];
@@ -101,6 +103,21 @@ impl Kind {
         match self {
             Self::Gradient => "perlin_noise",
             Self::Value => "value_noise",
+        }
+    }
+
+    const fn fit(self) -> Fit {
+        match self {
+            Self::Gradient => fit::GRADIENT,
+            Self::Value => fit::VALUE,
+        }
+    }
+
+    /// What a kernel of the fit is multiplied by: the unit of its offset, in cells.
+    const fn length(self) -> f32 {
+        match self {
+            Self::Gradient => fit::GRADIENT.width,
+            Self::Value => 1.0,
         }
     }
 
@@ -174,7 +191,8 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     let energy = energies(&mut b, kind, &footprint);
 
     // The octave fades to nothing before it is dropped.
-    let window = Window::of(&mut b, &footprint, energy[0]);
+    let width = kind.fit().width;
+    let window = Window::of(&mut b, width, &footprint, energy[0]);
     let zero = b.f32(0.0);
     let size = b.sqrt(major);
     let by_window = share(&mut b, size, HANDOVER[0], HANDOVER[1]);
@@ -201,21 +219,21 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     let mut captures = vec![start_y, window.columns, columns, window.shear];
     captures.extend(grid);
     captures.extend(state.fractions);
-    captures.extend(&window.captures);
+    captures.extend(window::captures(&window.shape));
     let kernels = b.fold(&row, rows, &vec![zero; parts], &captures);
     let wide = window.derivatives(&mut b, &kernels);
 
     // Both parts, in units of the position.
     let amplitude = b.scale(state.amplitude, kind.unit());
     let root = b.sqrt(window.inverse);
-    let weight = b.scale(root, profile::WIDTH * profile::WIDTH);
-    let weight = b.mul(weight, used);
+    let weight = b.mul(root, used);
+    let weight = b.scale(weight, kind.length());
     let slope = b.mul(amplitude, state.scale);
     let factors = [amplitude, slope, b.mul(amplitude, area)];
-    let weights = [by_near, weight];
     for (i, (name, sum)) in NAMES.into_iter().zip(sums).enumerate() {
-        let part = b.dot(&weights, &[close[i], wide[i]]);
         let order = profile::DERIVATIVES[i].iter().sum::<usize>();
+        let finer = b.scale(weight, width.powi(-(order as i32)));
+        let part = b.dot(&[by_near, finer], &[close[i], wide[i]]);
         let part = b.mul(part, factors[order]);
         let sum = b.add(sum, part);
         b.result(name, sum);
@@ -235,7 +253,7 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
 
 /// The sum over kernels of the window's fit: how far it reaches, and what is left of it.
 struct Window {
-    captures: Vec<Value>,
+    shape: Shape<2>,
     /// 1/det T.
     inverse: Value,
     /// T₁₂/T₂₂.
@@ -246,9 +264,12 @@ struct Window {
 }
 
 impl Window {
-    fn of(b: &mut Builder, footprint: &Footprint, energy: Value) -> Self {
-        let (captures, inverse) = window::captures(b, footprint.covariance, footprint.determinant);
-        let t_yy = captures[12];
+    fn of(b: &mut Builder, width: f32, footprint: &Footprint, energy: Value) -> Self {
+        let finer = width.powi(-2);
+        let covariance = footprint.covariance.map(|s| b.scale(s, finer));
+        let determinant = b.scale(footprint.determinant, finer * finer);
+        let (shape, inverse) = window::shape(b, covariance, determinant);
+        let t_yy = shape.total[1][1];
         // R² = ln F + 11 in units of T.
         let (tiny, one) = (b.f32(1e-12), b.f32(1.0));
         let energy = b.max(energy, tiny);
@@ -256,7 +277,7 @@ impl Window {
         let reach = b.offset(reach, NEGLIGIBLE_LN);
         let reach = b.max(reach, one);
         let reach = b.sqrt(reach);
-        let reach = b.add(reach, reach);
+        let reach = b.scale(reach, 2.0 * width);
         let rows = b.sqrt(t_yy);
         let rows = b.mul(rows, reach);
         let ratio = b.mul(inverse, t_yy);
@@ -276,18 +297,17 @@ impl Window {
         let by_reach = share(b, needed, MOST, MOST * 0.8);
         Self {
             fade: b.mul(by_amplitude, by_reach),
-            shear: b.div(footprint.covariance[1], t_yy),
-            captures,
+            shear: b.div(covariance[1], t_yy),
+            shape,
             inverse,
             rows,
             columns,
         }
     }
 
-    /// M on the sums: derivatives in cells.
+    /// M on the sums: derivatives in units of the fit's width.
     fn derivatives(&self, b: &mut Builder, kernels: &[Value]) -> Vec<Value> {
-        let [xx, xy, yy] = [0, 1, 2].map(|i| self.captures[i]);
-        let m = [[xx, xy], [xy, yy]];
+        let m = self.shape.inverse;
         let mut all = vec![kernels[0]];
         if let Some(sums) = kernels.get(1..3) {
             all.extend(m.map(|row| b.dot(&row, sums)));

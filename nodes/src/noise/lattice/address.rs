@@ -15,7 +15,7 @@ pub(in crate::noise) fn wrapped(b: &mut Builder, x: Value, period: Value) -> Val
 }
 
 /// The cell (an i32) wrapped to [0, period), as a real.
-pub(super) fn wrapped_cell(b: &mut Builder, cell: Value, period: Value) -> Value {
+pub(in crate::noise) fn wrapped_cell(b: &mut Builder, cell: Value, period: Value) -> Value {
     // The quotient of a far cell is off by some turns; the rest is then small and exact.
     let far = b.float_i(cell);
     let turns = b.div(far, period);

@@ -18,7 +18,7 @@ const FOURTH: [f32; 2] = [0.0144, 0.04];
 const REACH: f32 = 2.3;
 
 /// How many derivatives of the noise a mode needs.
-pub(super) fn derivatives(mode: Mode) -> usize {
+pub(in crate::noise) fn derivatives(mode: Mode) -> usize {
     match mode {
         Mode::Point | Mode::Naive | Mode::Ensemble => 0,
         Mode::Local => 1,

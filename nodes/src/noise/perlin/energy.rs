@@ -3,12 +3,12 @@
 use super::Kind;
 use mipless_codegen::ir::{Builder, Value};
 
-/// The spectrum of w, |ŵ(k)|², is e^{−Ak²} to within 2.3 % of the energy that any Gaussian filter
+/// The spectrum of w, |ŵ(k)|², is e^{−Ak²} (A is this) to within 2.3 % of the energy that any Gaussian filter
 /// leaves or removes.
-const A: f32 = 0.135_6;
+pub(in crate::noise) const WINDOW_WIDTH: f32 = 0.135_6;
 
-/// That of t w is k² e^{−Bk²}, to within 6.6 %.
-const B: f32 = 0.107_2;
+/// That of t w is k² e^{−Bk²} (B is this), to within 6.6 %.
+pub(in crate::noise) const PRODUCT_WIDTH: f32 = 0.107_2;
 
 /// The footprint in squared cells.
 #[derive(Clone, Copy, Debug)]
@@ -24,10 +24,10 @@ pub(super) struct Footprint {
 pub(super) fn energies(b: &mut Builder, kind: Kind, footprint: &Footprint) -> [Value; 3] {
     let [xx, _, yy] = footprint.covariance;
     match kind {
-        Kind::Value => term(b, footprint, [A, A], None),
+        Kind::Value => term(b, footprint, [WINDOW_WIDTH, WINDOW_WIDTH], None),
         Kind::Gradient => {
-            let along = term(b, footprint, [B, A], Some(yy));
-            let across = term(b, footprint, [A, B], Some(xx));
+            let along = term(b, footprint, [PRODUCT_WIDTH, WINDOW_WIDTH], Some(yy));
+            let across = term(b, footprint, [WINDOW_WIDTH, PRODUCT_WIDTH], Some(xx));
             let mut both = [along[0]; 3];
             for (i, sum) in both.iter_mut().enumerate() {
                 let total = b.add(along[i], across[i]);
@@ -63,7 +63,7 @@ fn term(b: &mut Builder, footprint: &Footprint, widths: [f32; 2], s: Option<Valu
         let v2 = b.sub(square, second);
         return [root, b.mul(v1, root), b.mul(v2, root)];
     };
-    let slope = b.scale(s, 1.0 / A);
+    let slope = b.scale(s, 1.0 / WINDOW_WIDTH);
     let n = b.offset(slope, 1.0);
     let root = b.mul(root, inverse);
     let fall = b.mul(n, first);

@@ -6,7 +6,7 @@ use crate::noise::lattice::{Octave, Octaves};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// The fade of Perlin 2002, 6t⁵ − 15t⁴ + 10t³.
-fn fade(b: &mut Builder, t: Value) -> Value {
+pub(in crate::noise) fn fade(b: &mut Builder, t: Value) -> Value {
     let rest = b.scale(t, 6.0);
     let rest = b.offset(rest, -15.0);
     let rest = b.mul(t, rest);
@@ -17,7 +17,7 @@ fn fade(b: &mut Builder, t: Value) -> Value {
 }
 
 /// x + share · (y − x).
-fn between(b: &mut Builder, share: Value, [x, y]: [Value; 2]) -> Value {
+pub(in crate::noise) fn between(b: &mut Builder, share: Value, [x, y]: [Value; 2]) -> Value {
     let rise = b.sub(y, x);
     let part = b.mul(share, rise);
     b.add(x, part)

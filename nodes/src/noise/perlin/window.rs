@@ -1,62 +1,69 @@
 //! The noise over any footprint: the window's fit is a polynomial times a Gaussian, and so is its
-//! product with the footprint.
-//!
-//! With T = b²I + Σ and M = b²T⁻¹, the product is a Gaussian of mean μ = Md and covariance
-//! C = ΣM, times b²/√det T e^{−d·μ/2b²}; the kernel's mean is the expectation of its polynomial G
-//! over that Gaussian. In sums over kernels, with E = e^{−d·μ/2b²}, derivatives are those of d
-//! alone, and M is applied once at the end:
-//! ∇ = M Σ E(∇G − dG/b²), Hess = M [Σ E(∇²G − (d∇Gᵀ + ∇G dᵀ)/b² + (ddᵀ − T)G/b⁴)] M.
+//! product with the footprint. In sums over kernels M is applied once, at the end.
 
+use super::fit::{Shape, Weight};
 use super::grid::Grid;
-use super::profile::{DERIVATIVES, WIDTH, fitted, joint};
 use super::{Kind, NAMES};
 use crate::noise::hash::corner;
-use crate::noise::lattice::parts;
+use crate::noise::lattice::{derivatives, parts};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 
-/// What every kernel of an octave needs of the footprint.
-pub(super) const CAPTURES: [&str; 13] = [
-    "m_xx", "m_xy", "m_yy", "c_xx", "c_yy", "c_1", "c_2", "c_3", "c_4", "c_5", "t_xx", "t_xy",
-    "t_yy",
+/// What every kernel of an octave needs of the footprint, in units of the fit's width.
+const CAPTURES: [&str; 9] = [
+    "m_xx", "m_xy", "m_yy", "c_xx", "c_xy", "c_yy", "t_xx", "t_xy", "t_yy",
 ];
 
-/// The captures for Σ and det Σ, with 1/det T.
-pub(super) fn captures(
+/// A symmetric matrix by its entries 11, 12, 22.
+fn symmetric([xx, xy, yy]: [Value; 3]) -> [[Value; 2]; 2] {
+    [[xx, xy], [xy, yy]]
+}
+
+/// The shape of a footprint, and 1/det T. S and det S are in units of the fit's width.
+pub(super) fn shape(
     b: &mut Builder,
     [s_xx, s_xy, s_yy]: [Value; 3],
     determinant: Value,
-) -> (Vec<Value>, Value) {
-    const AREA: f32 = WIDTH * WIDTH;
-    let (t_xx, t_yy) = (b.offset(s_xx, AREA), b.offset(s_yy, AREA));
-    // det T = b⁴ + b² tr Σ + det Σ, all positive.
+) -> (Shape<2>, Value) {
+    let (t_xx, t_yy) = (b.offset(s_xx, 1.0), b.offset(s_yy, 1.0));
+    // det T = 1 + tr S + det S, all positive.
     let trace = b.add(s_xx, s_yy);
-    let trace = b.scale(trace, AREA);
     let whole = b.add(trace, determinant);
-    let whole = b.offset(whole, AREA * AREA);
+    let whole = b.offset(whole, 1.0);
     let one = b.f32(1.0);
     let inverse = b.div(one, whole);
-    let scaled = b.scale(inverse, AREA);
-    let m_xx = b.mul(t_yy, scaled);
-    let m_yy = b.mul(t_xx, scaled);
-    let m_xy = b.mul(s_xy, scaled);
-    // C = b²(b²Σ + det Σ I)/det T.
+    // C = (S + det S I)/det T.
     let [c_xx, c_yy] = [s_xx, s_yy].map(|s| {
-        let s = b.scale(s, AREA);
         let s = b.add(s, determinant);
-        b.mul(s, scaled)
+        b.mul(s, inverse)
     });
-    let c_xy = b.scale(m_xy, AREA);
-    let m_xy = b.neg(m_xy);
-    let mut all = vec![m_xx, m_xy, m_yy, c_xx, c_yy, c_xy];
-    let mut power = c_xy;
-    for k in 2..=5 {
-        let next = b.mul(power, c_xy);
-        power = b.scale(next, 1.0 / k as f32);
-        all.push(power);
+    let c_xy = b.mul(s_xy, inverse);
+    let shape = Shape {
+        inverse: symmetric([b.mul(t_yy, inverse), b.neg(c_xy), b.mul(t_xx, inverse)]),
+        covariance: symmetric([c_xx, c_xy, c_yy]),
+        total: symmetric([t_xx, s_xy, t_yy]),
+    };
+    (shape, inverse)
+}
+
+/// The captures for a shape.
+pub(super) fn captures(shape: &Shape<2>) -> Vec<Value> {
+    [shape.inverse, shape.covariance, shape.total]
+        .iter()
+        .flat_map(|[[xx, xy], [_, yy]]| [*xx, *xy, *yy])
+        .collect()
+}
+
+fn declare(b: &mut Builder) -> Shape<2> {
+    let [inverse, covariance, total] = [0, 3, 6].map(|at| {
+        let entries = [0, 1, 2].map(|i| b.param_f32(CAPTURES[at + i]));
+        symmetric(entries)
+    });
+    Shape {
+        inverse,
+        covariance,
+        total,
     }
-    all.extend([t_xx, s_xy, t_yy]);
-    (all, inverse)
 }
 
 fn sums(b: &mut Builder, mode: Mode) -> Vec<Value> {
@@ -70,62 +77,32 @@ fn sums(b: &mut Builder, mode: Mode) -> Vec<Value> {
 fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
     let doc = "The filtered kernel of one lattice point.";
     let mut b = Builder::new(format!("{}_kernel", kind.name()), doc);
+    let fit = kind.fit();
     let index = b.param("index", Type::U32);
     let sums = sums(&mut b, mode);
     let start = b.param_f32("start_x");
     let (x, dy) = (b.param_f32("x"), b.param_f32("dy"));
     let row = b.param("row_word", Type::U32);
     let grid = Grid::declare(&mut b, tiles);
-    let footprint = CAPTURES.map(|name| b.param_f32(name));
-    let [m_xx, m_xy, m_yy, c_xx, c_yy, ..] = footprint;
-    let (powers, t) = (&footprint[5..10], &footprint[10..]);
+    let shape = declare(&mut b);
     let offset = b.float_u(index);
     let place = b.add(start, offset);
     let dx = b.sub(x, place);
     let column = grid.word(&mut b, 0, place);
     let hash = corner(&mut b, column, row);
-    let d = [dx, dy];
-    let means = [b.dot(&[m_xx, m_xy], &d), b.dot(&[m_xy, m_yy], &d)];
+    let d = [dx, dy].map(|d| b.scale(d, 1.0 / fit.width));
+    let means = shape.inverse.map(|row| b.dot(&row, &d));
     let distance = b.dot(&d, &means);
-    let exponent = b.scale(distance, -0.5 / (WIDTH * WIDTH));
+    let exponent = b.scale(distance, -0.5);
     let least = b.f32(-80.0);
     let exponent = b.max(exponent, least);
     let envelope = b.exp(exponent);
-    let profiles = [
-        fitted(&mut b, means[0], c_xx),
-        fitted(&mut b, means[1], c_yy),
-    ];
-    // G and its derivatives by μ.
     let weights = kind.weights(&mut b, hash);
-    let mut g = Vec::new();
-    for along in &DERIVATIVES[..sums.len()] {
-        let mut sum = b.f32(0.0);
-        for (&weight, &[i, j]) in weights.iter().zip(kind.terms()) {
-            let part = joint(&mut b, [&profiles[0][i], &profiles[1][j]], *along, powers);
-            let part = b.mul(weight, part);
-            sum = b.add(sum, part);
-        }
-        g.push(sum);
-    }
-    let mut parts = vec![g[0]];
-    let lean = b.scale(g[0], -1.0 / (WIDTH * WIDTH));
-    if sums.len() > 1 {
-        for i in 0..2 {
-            let drop = b.mul(d[i], lean);
-            parts.push(b.add(g[1 + i], drop));
-        }
-    }
-    if sums.len() > 3 {
-        for (at, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
-            let outer = b.dot(&[d[i], d[j]], &[g[1 + j], g[1 + i]]);
-            let square = b.mul(d[i], d[j]);
-            let square = b.sub(square, t[at]);
-            let bent = b.mul(square, lean);
-            let both = b.add(outer, bent);
-            let both = b.scale(both, -1.0 / (WIDTH * WIDTH));
-            parts.push(b.add(g[3 + at], both));
-        }
-    }
+    let weight = match (kind, &weights[..]) {
+        (Kind::Gradient, &[x, y]) => Weight::Direction([x, y]),
+        _ => Weight::Number(weights[0]),
+    };
+    let parts = fit.kernel(&mut b, weight, (d, means), &shape, derivatives(mode));
     for ((name, sum), part) in NAMES.into_iter().zip(sums).zip(parts) {
         let part = b.mul(envelope, part);
         let sum = b.add(sum, part);
@@ -154,7 +131,7 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let shear = b.param_f32("shear");
     let grid = Grid::declare(&mut b, tiles);
     let (x, y) = (b.param_f32("x"), b.param_f32("y"));
-    let footprint = CAPTURES.map(|name| b.param_f32(name));
+    let shape = declare(&mut b);
     let offset = b.float_u(index);
     let place = b.add(start, offset);
     let dy = b.sub(y, place);
@@ -165,7 +142,7 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let start = start_of(&mut b, centre, columns);
     let mut captures = vec![start, x, dy, word];
     captures.extend(grid.captures());
-    captures.extend(footprint);
+    captures.extend(self::captures(&shape));
     let sums = b.fold(&kernel, count, &sums, &captures);
     for (name, sum) in NAMES.into_iter().zip(sums) {
         b.result(name, sum);

@@ -1,14 +1,15 @@
 //! One octave of the noise in space.
 
-use super::energy::Energy;
-use super::kernel::{STEPS, Window, point_slice, slice, start};
-use super::spread::Spread;
-use super::{NAMES, PAIRS, WIDTH, parts, place};
-use crate::noise::hash::NEXT_OCTAVE;
+use super::kernel::{Window, slice, start};
+use super::points::Points;
+use super::spread::{Inverse, Spread};
+use super::state::State;
+use super::{Kind, NAMES, PAIRS, parts, place, quadrupole, quintic};
 use crate::noise::lattice::Octaves;
+use crate::noise::perlin::HANDOVER;
 use crate::noise::remainder::{remainder, share};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
-use mipless_codegen::moments::{Mode, Signal};
+use mipless_codegen::moments::Mode;
 
 /// Below this share of its amplitude an octave has faded, above the other it has not begun to.
 const FADE: [f32; 2] = [0.03, 0.06];
@@ -19,100 +20,21 @@ const NEGLIGIBLE_LN: f32 = 9.66;
 /// The most slices, rows or columns that are summed; footprints that need more fade.
 const MOST: f32 = 32.0;
 
-/// The part of an octave's state that goes from octave to octave.
-struct State {
-    cells: [Value; 3],
-    fractions: [Value; 3],
-    scale: Value,
-    amplitude: Value,
-    seed: Value,
-}
-
-impl State {
-    fn declare(b: &mut Builder) -> Self {
-        let places = ["x", "y", "z"].map(|name| {
-            let cell = b.param(format!("cell_{name}"), Type::I32);
-            (cell, b.param_f32(name))
-        });
-        Self {
-            cells: places.map(|(cell, _)| cell),
-            fractions: places.map(|(_, fraction)| fraction),
-            scale: b.param_f32("scale"),
-            amplitude: b.param_f32("amplitude"),
-            seed: b.param("seed", Type::U32),
-        }
-    }
-
-    /// The key of the lattice point at the position's cell.
-    fn key(&self, b: &mut Builder) -> Value {
-        let mut key = self.seed;
-        for (cell, step) in self.cells.into_iter().zip(STEPS) {
-            let step = b.u32(step);
-            let cell = b.cast_u(cell);
-            let walked = b.mul_u(cell, step);
-            key = b.add_u(key, walked);
-        }
-        key
-    }
-
-    /// The state of the next octave, as results.
-    fn advance(&self, b: &mut Builder, octaves: Octaves) {
-        let lacunarity = b.f32(octaves.lacunarity);
-        for (i, name) in ["x", "y", "z"].into_iter().enumerate() {
-            // Octaves must not share lattice points, where the variance of all is largest.
-            let shifted = b.offset(self.fractions[i], 0.381_966 / octaves.lacunarity);
-            let start = Signal {
-                cell: Some(self.cells[i]),
-                ..Signal::certain(b, shifted)
-            };
-            let next = start.scale(b, lacunarity);
-            let cell = next.cell.expect("a position keeps its cell");
-            b.result(format!("cell_{name}"), cell);
-            b.result(name, next.mean);
-        }
-        let scale = b.scale(self.scale, octaves.lacunarity);
-        let amplitude = b.scale(self.amplitude, octaves.diminish);
-        let step = b.u32(NEXT_OCTAVE);
-        let seed = b.add_u(self.seed, step);
-        b.result("scale", scale);
-        b.result("amplitude", amplitude);
-        b.result("seed", seed);
-    }
-}
-
-/// κ of the unfiltered noise: √3 π^{−3/4} a^{−3/2}.
-fn unit() -> f32 {
-    3.0f32.sqrt() * std::f32::consts::PI.powf(-0.75) * WIDTH.powf(-1.5)
-}
-
-/// One octave of the unfiltered noise, the body of a fold: the nearest 3×3×3 kernels.
-pub(super) fn point(module: &mut Module, octaves: Octaves) -> FunctionRef {
-    let slice = point_slice(module, WIDTH);
+/// One octave of the unfiltered noise, the body of a fold.
+pub(super) fn point(module: &mut Module, kind: Kind, octaves: Octaves) -> FunctionRef {
+    let near = (kind == Kind::Quadrupole).then(|| quadrupole::Point::new(module, octaves.tiles()));
     let doc = "One more octave of the unfiltered noise in space.";
     let mut builder = Builder::new("volume_octave", doc);
     let b = &mut builder;
     b.param("index", Type::U32);
     let sum = b.param_f32("mean");
-    let state = State::declare(b);
-    let mut key = state.key(b);
-    let three = b.f32(3.0);
-    let offsets = [0, 1, 2].map(|axis| {
-        let place = start(b, state.fractions[axis], three);
-        key = super::kernel::stepped(b, key, axis, place);
-        let offset = b.sub(state.fractions[axis], place);
-        b.scale(offset, 1.0 / WIDTH)
-    });
-    let mut captures = Vec::new();
-    for column in 0..3 {
-        let d = b.offset(offsets[0], -(column as f32) / WIDTH);
-        let square = b.square(d);
-        let exponent = b.scale(square, -0.5);
-        captures.extend([d, b.exp(exponent)]);
-    }
-    captures.extend([offsets[1], offsets[2], key]);
-    let (zero, three) = (b.f32(0.0), b.u32(3));
-    let kernels = b.fold(&slice, three, &[zero], &captures)[0];
-    let amplitude = b.scale(state.amplitude, unit());
+    let state = State::declare(b, octaves);
+    let points = Points::of(b, &state);
+    let kernels = match near {
+        Some(near) => near.sum(b, points, state.fractions),
+        None => quintic::point(b, points, state.fractions),
+    };
+    let amplitude = b.scale(state.amplitude, kind.unit());
     let part = b.mul(kernels, amplitude);
     let sum = b.add(sum, part);
     b.result("mean", sum);
@@ -120,10 +42,71 @@ pub(super) fn point(module: &mut Module, octaves: Octaves) -> FunctionRef {
     builder.finish(module)
 }
 
+/// The lattice points that a footprint needs: how many slices, of rows, of columns, how far each
+/// leans, and how much of the octave there is.
+struct Reach {
+    counts: [Value; 3],
+    /// Along y by z, and along x by y and z.
+    leans: [Value; 3],
+    fade: Value,
+}
+
+impl Reach {
+    /// Kernels reach R² = ln F + 9.66, along z, along y at a z, along x at a y and z.
+    fn of(
+        b: &mut Builder,
+        kind: Kind,
+        (inverse, total): (&Inverse, &[Value; 6]),
+        energy: Value,
+    ) -> Self {
+        let (zero, one, tiny) = (b.f32(0.0), b.f32(1.0), b.f32(1e-12));
+        let left = b.max(energy, tiny);
+        let reach = b.ln(left);
+        let reach = b.offset(reach, NEGLIGIBLE_LN);
+        let reach = b.max(reach, one);
+        let reach = b.sqrt(reach);
+        let reach = b.scale(reach, 2.0 * kind.width());
+        let [p_xx, p_xy, p_xz, ..] = inverse.matrix;
+        let whole = b.mul(total[5], inverse.shrink);
+        let along_y = b.div(p_xx, whole);
+        let along_x = b.div(one, p_xx);
+        let mut most = zero;
+        let counts = [total[5], along_y, along_x].map(|variance| {
+            let size = b.sqrt(variance);
+            let needed = b.mul(size, reach);
+            most = b.max(most, needed);
+            // ⌈needed⌉ between 3 and the most.
+            let minus = b.neg(needed);
+            let floor = b.floor(minus);
+            let up = b.neg(floor);
+            b.clamp(up, 3.0, MOST)
+        });
+        // The octave fades to nothing before it is dropped.
+        let amplitude = b.sqrt(left);
+        let by_amplitude = share(b, amplitude, FADE[0], FADE[1]);
+        let by_reach = share(b, most, MOST, MOST * 0.8);
+        let [lean_y, lean_z] = [p_xy, p_xz].map(|p| {
+            let lean = b.div(p, p_xx);
+            b.neg(lean)
+        });
+        Self {
+            counts,
+            leans: [b.div(total[4], total[5]), lean_y, lean_z],
+            fade: b.mul(by_amplitude, by_reach),
+        }
+    }
+}
+
 /// One octave of the filtered noise, the body of a fold.
-pub(super) fn filtered(module: &mut Module, mode: Mode, octaves: Octaves) -> FunctionRef {
-    let parts = parts(mode);
-    let slice = slice(module, parts, WIDTH);
+pub(super) fn filtered(
+    module: &mut Module,
+    kind: Kind,
+    mode: Mode,
+    octaves: Octaves,
+) -> FunctionRef {
+    let (parts, tiles) = (parts(mode), octaves.tiles());
+    let corner = (kind == Kind::Quintic).then(|| quintic::corner(module, parts, tiles));
+    let slice = slice(module, kind, parts, tiles);
     let doc = "One more octave of the filtered noise in space.";
     let mut builder = Builder::new("volume_octave", doc);
     let b = &mut builder;
@@ -133,107 +116,95 @@ pub(super) fn filtered(module: &mut Module, mode: Mode, octaves: Octaves) -> Fun
         .map(|name| b.param_f32(*name))
         .collect();
     let rest = mode.spreads().then(|| b.param_f32("rest"));
-    let state = State::declare(b);
+    let state = State::declare(b, octaves);
     let spread = Spread::declare(b).scaled(b, state.scale);
-    let energy = Energy::of(b, &spread);
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-
-    // How far kernels reach, R² = ln F + 9.66, along z, along y at a z, along x at a y and z.
-    let tiny = b.f32(1e-12);
-    let left = b.max(energy.shares[0], tiny);
-    let reach = b.ln(left);
-    let reach = b.offset(reach, NEGLIGIBLE_LN);
-    let reach = b.max(reach, one);
-    let reach = b.sqrt(reach);
-    let reach = b.scale(reach, 2.0 * WIDTH);
-    let [p_xx, p_xy, p_xz, ..] = energy.inverse;
-    let t: [Value; 6] = std::array::from_fn(|at| match at {
+    let inverse = spread.inverse(b);
+    let energy = kind.energy(b, &spread, &inverse);
+    let total: [Value; 6] = std::array::from_fn(|at| match at {
         0 | 3 | 5 => b.offset(spread.covariance[at], 1.0),
         _ => spread.covariance[at],
     });
-    let whole = b.mul(t[5], energy.shrink);
-    let along_y = b.div(p_xx, whole);
-    let along_x = b.div(one, p_xx);
-    let mut most = zero;
-    let counts = [t[5], along_y, along_x].map(|variance| {
-        let size = b.sqrt(variance);
-        let needed = b.mul(size, reach);
-        most = b.max(most, needed);
-        // ⌈needed⌉ between 3 and the most.
-        let minus = b.neg(needed);
-        let floor = b.floor(minus);
-        let up = b.neg(floor);
-        b.clamp(up, 3.0, MOST)
-    });
+    let reach = Reach::of(b, kind, (&inverse, &total), energy[0]);
+    let points = Points::of(b, &state);
+    let (zero, one, none) = (b.f32(0.0), b.f32(1.0), b.u32(0));
+    let width = kind.width();
 
-    // The octave fades to nothing before it is dropped.
-    let amplitude = b.sqrt(left);
-    let by_amplitude = share(b, amplitude, FADE[0], FADE[1]);
-    let by_reach = share(b, most, MOST, MOST * 0.8);
-    let fade = b.mul(by_amplitude, by_reach);
-    let is_there = b.lt(zero, fade);
-    let [slices, rows, columns] = counts.map(|count| {
+    // Narrow footprints act on the polynomials of the window.
+    let (by_kernels, close) = match corner {
+        None => (one, None),
+        Some(corner) => {
+            let size = spread.size(b);
+            let [low, high] = HANDOVER.map(|size| size / width);
+            let by_kernels = share(b, size, low, high);
+            let by_corners = b.sub(one, by_kernels);
+            let is_near = b.lt(zero, by_corners);
+            let eight = b.u32(8);
+            let turns = b.select(is_near, eight, none);
+            let mut captures = points.captures();
+            captures.extend(state.fractions);
+            captures.extend(spread.covariance.map(|s| b.scale(s, width * width)));
+            let sums = b.fold(&corner, turns, &vec![zero; parts], &captures);
+            (by_kernels, Some((by_corners, sums)))
+        }
+    };
+    let used = b.mul(by_kernels, reach.fade);
+    let is_used = b.lt(zero, used);
+    let [slices, rows, columns] = reach.counts.map(|count| {
         let turns = b.trunc_i(count);
         let turns = b.cast_u(turns);
         Window { count, turns }
     });
-    let none = b.u32(0);
-    let turns = b.select(is_there, slices.turns, none);
+    let turns = b.select(is_used, slices.turns, none);
 
-    let shear = b.div(t[4], t[5]);
-    let leans = [p_xy, p_xz].map(|p| {
-        let lean = b.div(p, p_xx);
-        b.neg(lean)
-    });
     let [x, y, z] = state.fractions;
     let first = start(b, z, slices.count);
-    let key = state.key(b);
-    let key = super::kernel::stepped(b, key, 2, first);
-    let dz = b.sub(z, first);
-    let dz = b.scale(dz, 1.0 / WIDTH);
     let mut captures = rows.captures().to_vec();
     captures.extend(columns.captures());
-    captures.push(shear);
-    captures.extend(leans);
-    captures.extend([x, y, dz, key]);
-    captures.extend(energy.inverse);
-    captures.push(energy.trace);
-    captures.extend(t);
+    captures.extend(reach.leans);
+    let dz = b.sub(z, first);
+    captures.extend([x, y, b.scale(dz, 1.0 / width)]);
+    captures.extend(points.moved(b, 2, first).captures());
+    captures.extend(inverse.matrix);
+    captures.extend(total);
     let kernels = b.fold(&slice, turns, &vec![zero; parts], &captures);
 
     // κ = κ₀/√det(I + S), and P on the sums.
-    let root = b.sqrt(energy.shrink);
-    let weight = b.scale(root, unit());
-    let weight = b.mul(weight, fade);
-    let weight = b.mul(weight, state.amplitude);
-    let mut totals = vec![b.mul(weight, kernels[0])];
-    let row = |i: usize| [0, 1, 2].map(|j| energy.inverse[place(i, j)]);
-    let finer = b.scale(state.scale, 1.0 / WIDTH);
-    if let Some(sums) = kernels.get(1..4) {
-        let weight = b.mul(weight, finer);
-        for i in 0..3 {
-            let slope = b.dot(&row(i), sums);
-            totals.push(b.mul(weight, slope));
+    let root = b.sqrt(inverse.shrink);
+    let weight = match kind {
+        Kind::Quadrupole => root,
+        // The offset is in units of the width.
+        Kind::Quintic => b.scale(root, width),
+    };
+    let weight = b.mul(weight, used);
+    let totals = applied(b, &inverse, &kernels);
+    let amplitude = b.scale(state.amplitude, kind.unit());
+    let area = b.square(state.scale);
+    let factors = [one, state.scale, area].map(|factor| b.mul(factor, amplitude));
+    for (at, (name, sum)) in NAMES.into_iter().zip(sums).enumerate() {
+        let order = match at {
+            0 => 0,
+            1..4 => 1,
+            _ => 2,
+        };
+        let finer = b.scale(weight, width.powi(-order));
+        let mut part = b.mul(finer, totals[at]);
+        if let Some((by_corners, sums)) = &close {
+            part = b.dot(&[finer, *by_corners], &[totals[at], sums[at]]);
         }
-    }
-    if let Some(sums) = kernels.get(4..10) {
-        let area = b.square(finer);
-        let weight = b.mul(weight, area);
-        for [i, j] in PAIRS {
-            let inner = [0, 1, 2].map(|k| {
-                let column = [0, 1, 2].map(|l| sums[place(k, l)]);
-                b.dot(&column, &row(j))
-            });
-            let bend = b.dot(&row(i), &inner);
-            totals.push(b.mul(weight, bend));
-        }
-    }
-    for ((name, sum), part) in NAMES.into_iter().zip(sums).zip(totals) {
+        let part = b.mul(factors[order as usize], part);
         let total = b.add(sum, part);
         b.result(name, total);
+        if at + 1 == parts {
+            break;
+        }
     }
     if let Some(rest) = rest {
-        let left = remainder(b, mode, energy.shares, fade);
+        // Narrow footprints do not fade.
+        let fade = match &close {
+            Some((by_corners, _)) => b.add(*by_corners, used),
+            None => used,
+        };
+        let left = remainder(b, mode, energy, fade);
         let power = b.square(state.amplitude);
         let part = b.mul(power, left);
         let rest = b.add(rest, part);
@@ -241,4 +212,25 @@ pub(super) fn filtered(module: &mut Module, mode: Mode, octaves: Octaves) -> Fun
     }
     state.advance(b, octaves);
     builder.finish(module)
+}
+
+/// P on the sums: derivatives in units of the kernel's width.
+fn applied(b: &mut Builder, inverse: &Inverse, kernels: &[Value]) -> Vec<Value> {
+    let row = |i: usize| [0, 1, 2].map(|j| inverse.matrix[place(i, j)]);
+    let mut totals = vec![kernels[0]];
+    if let Some(sums) = kernels.get(1..4) {
+        for i in 0..3 {
+            totals.push(b.dot(&row(i), sums));
+        }
+    }
+    if let Some(sums) = kernels.get(4..10) {
+        for [i, j] in PAIRS {
+            let inner = [0, 1, 2].map(|k| {
+                let column = [0, 1, 2].map(|l| sums[place(k, l)]);
+                b.dot(&column, &row(j))
+            });
+            totals.push(b.dot(&row(i), &inner));
+        }
+    }
+    totals
 }

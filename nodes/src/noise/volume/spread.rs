@@ -1,6 +1,6 @@
 //! The covariance of a position in space.
 
-use super::{PAIRS, WIDTH, place};
+use super::{PAIRS, place};
 use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::moments::Signal;
 
@@ -8,7 +8,7 @@ use mipless_codegen::moments::Signal;
 /// long before, and the square of the square is finite.
 const WIDEST: f32 = 1.0e4;
 
-/// S = Σ/a² of a position in cells.
+/// S = Σ/a² of a position in cells, a being the width of the kernel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spread {
     /// In the order of [`PAIRS`].
@@ -21,9 +21,20 @@ pub(super) struct Spread {
     pub(super) trace: Value,
 }
 
+/// P = (I + S)⁻¹.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inverse {
+    /// In the order of [`PAIRS`].
+    pub(super) matrix: [Value; 6],
+    /// tr adj S.
+    pub(super) minors: Value,
+    /// 1/det(I + S).
+    pub(super) shrink: Value,
+}
+
 impl Spread {
-    /// Of a position (x, y, z); zero where signals carry none.
-    pub(super) fn of(b: &mut Builder, position: &[Signal]) -> Self {
+    /// Of a position (x, y, z), for a kernel of this width in cells; zero where signals carry none.
+    pub(super) fn of(b: &mut Builder, position: &[Signal], width: f32) -> Self {
         assert_eq!(position.len(), 3, "a position in space");
         // One factor for all keeps the shape.
         let mut total = b.f32(0.0);
@@ -31,10 +42,10 @@ impl Spread {
             let variance = axis.variance(b);
             total = b.add(total, variance);
         }
-        let limit = b.f32((WIDEST * WIDTH) * (WIDEST * WIDTH));
+        let limit = b.f32((WIDEST * width) * (WIDEST * width));
         let most = b.max(total, limit);
         let factor = b.div(limit, most);
-        let factor = b.scale(factor, 1.0 / (WIDTH * WIDTH));
+        let factor = b.scale(factor, 1.0 / (width * width));
         let root = b.sqrt(factor);
         let covariance = PAIRS.map(|[i, j]| {
             let covariance = position[i].covariance(b, &position[j]).total;
@@ -64,6 +75,42 @@ impl Spread {
             adjugate,
             determinant,
             trace: b.add(sum, diagonal[2]),
+        }
+    }
+
+    /// (I + S)⁻¹. With t = tr S, m = tr adj S, e = 1 + t + m + det S it is ((1 + t)I − S + adj S)/e.
+    pub(super) fn inverse(&self, b: &mut Builder) -> Inverse {
+        let minors = [0, 3, 5].map(|at| self.adjugate[at]);
+        let sum = b.add(minors[0], minors[1]);
+        let sum = b.add(sum, minors[2]);
+        let zero = b.f32(0.0);
+        let minors = b.max(sum, zero);
+        let e = b.add(self.trace, minors);
+        let e = b.add(e, self.determinant);
+        let e = b.offset(e, 1.0);
+        let one = b.f32(1.0);
+        let shrink = b.div(one, e);
+        // 1 + t − S₁₁ is 1 + S₂₂ + S₃₃, without a difference.
+        let diagonal = [0, 3, 5].map(|at| self.covariance[at]);
+        let mut matrix = self.covariance;
+        for (at, out) in matrix.iter_mut().enumerate() {
+            let first = match at {
+                0 => b.add(diagonal[1], diagonal[2]),
+                3 => b.add(diagonal[0], diagonal[2]),
+                5 => b.add(diagonal[0], diagonal[1]),
+                _ => b.neg(self.covariance[at]),
+            };
+            let first = match at {
+                0 | 3 | 5 => b.offset(first, 1.0),
+                _ => first,
+            };
+            let sum = b.add(first, self.adjugate[at]);
+            *out = b.mul(sum, shrink);
+        }
+        Inverse {
+            matrix,
+            minors,
+            shrink,
         }
     }
 
