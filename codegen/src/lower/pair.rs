@@ -132,6 +132,7 @@ impl Lower<'_> {
         let domain = Domain {
             bounds: [x.range, y.range],
             periodic: false,
+            detail: 1,
         };
         let ranges: Vec<[f32; 2]> = closed.iter().map(|signal| signal.range).collect();
         let key = format!("pair {index}");
