@@ -16,6 +16,7 @@ mod rule;
 mod sampling;
 mod symbols;
 mod table;
+mod taps;
 
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
@@ -189,8 +190,9 @@ struct Compiler<'a> {
     tabulated: RefCell<FxHashMap<String, Tabulated>>,
     /// The functions of two signals, by their keys.
     maps: RefCell<FxHashMap<String, Map>>,
-    /// Whether regions of two signals are worth a map, by their shapes.
-    gains: RefCell<FxHashMap<u64, bool>>,
+    /// Whether regions are worth more than their closed form, by their shapes: of two signals 1 for a
+    /// map, of one signal the parts on each side of its middle; 0 for no.
+    gains: RefCell<FxHashMap<u64, usize>>,
     /// The table of levels that pyramids share, once there is one.
     levels: Cell<Option<u32>>,
     /// The functions that all functions share.

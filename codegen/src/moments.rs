@@ -30,6 +30,7 @@ mod selection;
 mod signal;
 mod smooth;
 mod tabulated;
+mod tapped;
 #[cfg(test)]
 mod tests;
 mod transfer;
@@ -46,6 +47,7 @@ pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Exponential, Polynomial, RealPower, Reciprocal, Sine};
 pub use tabulated::Tabulated;
 pub(crate) use tabulated::{Sampled, Samples, sample_points};
+pub(crate) use tapped::{SIDES, Tapped};
 pub use transfer::{Gaussian, Moments, SharedTransfer, Transfer};
 pub use wave::{Corner, LinearWave, SquareWave};
 

@@ -191,6 +191,7 @@ fn node(spec: &NodeSpec) -> Value {
         OutputType::Widest | OutputType::Whole => "the widest of the inputs",
         OutputType::Named(_) => "the type that is named",
         OutputType::Stops => "the type of the stops",
+        OutputType::Picture { .. } => "the type that is named, or that of the stops",
     };
     let category: Category = spec.category;
     let description = format!("{} ({}; out: {output})", spec.summary, category.name());

@@ -210,6 +210,14 @@ pub enum OutputType {
     Named(&'static str),
     /// The type of the values of the [`PortType::Stops`] input.
     Stops,
+    /// The type that the [`PortType::Choice`] input `named` names where the [`Type::Filename`] input
+    /// `file` names one, else that of the values of the [`PortType::Stops`] input.
+    Picture {
+        /// The file.
+        file: &'static str,
+        /// The type.
+        named: &'static str,
+    },
 }
 
 /// The parts of a node's reference page; Markdown without headings.

@@ -175,6 +175,27 @@ fn files_that_cannot_be_used_are_located_errors() {
 }
 
 #[test]
+fn a_colour_map_reads_its_picture_and_locates_its_mistakes() {
+    let text = r#"{ "version": 1, "name": "test", "nodes": {
+  "wall": { "type": "colormap2d", "inputs": { "in1": 0.375, "in2": 0.75, "file": "a.png" } }
+}, "outputs": { "out": { "node": "wall" } } }"#;
+    // Texel (1, 1) is 128 of 255 red, the others black.
+    let mut bytes = [0; 24];
+    bytes[15] = 128;
+    let sound = png(&bytes, ExtendedColorType::Rgb8);
+    let texture = load(text, &one("a.png", sound.clone())).expect("a PNG");
+    near(&texel(&texture, 0, 0), &[0.215_860_5, 0.0, 0.0], 1e-6);
+    let raw = text.replace("a.png\"", "a.png\", \"colorspace\": \"lin_rec709\"");
+    let texture = load(&raw, &one("a.png", sound.clone())).expect("a PNG");
+    near(&texel(&texture, 0, 0), &[128.0 / 255.0, 0.0, 0.0], 1e-6);
+
+    assert_eq!(mistake(text, &BTreeMap::new()).code, "missing-file");
+    let cut = sound[..sound.len() / 2].to_vec();
+    assert_eq!(mistake(text, &one("a.png", cut)).code, "bad-image");
+    assert_eq!(mistake(text, &Endless).code, "image-too-large");
+}
+
+#[test]
 fn pictures_too_large_are_refused_before_they_are_decoded() {
     // The size stands in the first chunk; its checksum is not looked at before.
     let mut file = png(&[9; 8], ExtendedColorType::L8);

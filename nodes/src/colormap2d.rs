@@ -1,12 +1,18 @@
 //! A colour for each pair of values of two signals.
 
-use mipless_codegen::ir::{Builder, Module, Type as Scalar, Value};
-use mipless_codegen::moments::{Domain, Piecewise, Shape, Signal, Transfer};
+mod shape;
+
+use std::sync::Arc;
+
+use crate::picture::port::{COLORSPACE, FILE, planes};
+use crate::picture::texels::Texels;
+use mipless_codegen::ir::{Builder, Module, Value};
+use mipless_codegen::moments::{Domain, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
-    Stops, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
+use shape::Shape;
 
 static SPEC: NodeSpec = NodeSpec {
     name: "colormap2d",
@@ -15,10 +21,11 @@ static SPEC: NodeSpec = NodeSpec {
     summary: "A colour or number for each pair of values of two signals.",
     doc: Doc {
         computes: "With p = (in1 − low₁, in2 − low₂) / (high − low), limited to [0, 1]² or wrapped \
-            around (`addressmode`), a place t of the stops: `bands`, t = fract(count · (p₁ cos a + p₂ \
-            sin a)) for the angle a = `rotate`; `rings`, t = fract(2 count |p − center|); `regions`, \
-            t = (i + ½)/count in the Voronoi cell of site i of `count` random ones. out = the value \
-            of the stops at t, as in `colorramp`; alpha is a channel like the others.",
+            around (`addressmode`): with a `file`, its picture at p by bilinear interpolation, the \
+            first row at p₂ = 0. Without one, a place t of the stops: `bands`, t = fract(count · (p₁ \
+            cos a + p₂ sin a)) for the angle a = `rotate`; `rings`, t = fract(2 count |p − center|); \
+            `regions`, t = (i + ½)/count in the Voronoi cell of site i of `count` random ones; out = \
+            the value of the stops at t, as in `colorramp`. Alpha is a channel like the others.",
         statistics: "The function is sampled when it is compiled; a pyramid of its means under isotropic \
             Gaussians is read by five taps along the major axis of the covariance of the two \
             signals. So the covariance counts in full, whether the signals are correlated as \
@@ -27,9 +34,11 @@ static SPEC: NodeSpec = NodeSpec {
             and what channels share beyond their slopes is not carried.",
         accuracy: "For Gaussian inputs with standard deviations up to an eighth of the domain, ratios of up \
             to 16 and any correlation: mean error of at most 0.003 of the range of values for maps \
-            with jumps and 0.001 for smooth ones, by tables of less than 1 MB. The manifest states the largest error of \
+            with jumps and 0.001 for smooth ones, by tables of less than 1 MB (and the texels of a \
+            picture, 4 bytes a channel). A picture with more than 2048 texels over the \
+            map's domain is averaged to that. The manifest states the largest error of \
             each table. Held by `codegen/src/moments/map/tests.rs` against dense numerical \
-            integration in f64.",
+            integration in f64, for pictures by `nodes/tests/colormap.rs`.",
         references: "Grenier, Sauvage, Dischler & Thery 2022, *Color-mapped noise vector fields for \
             generating procedural micro-patterns*, §5 (two independent noises, axis-aligned \
             Gaussians). Heitz, Nowrouzezahrai, Poulin & Neyret 2013, *Filtering Color Mapped \
@@ -50,11 +59,19 @@ static SPEC: NodeSpec = NodeSpec {
             "The signal along the map's second axis.",
         )
         .range(Range::soft(0.0, 1.0)),
+        FILE,
+        PortSpec::new(
+            "signature",
+            PortType::Choice(&["color3", "color4", "float"]),
+            Default::Choice("color3"),
+            "The type of the result with a file.",
+        ),
+        COLORSPACE,
         PortSpec::new(
             "shape",
             PortType::Choice(&["bands", "rings", "regions"]),
             Default::Choice("regions"),
-            "What the map looks like.",
+            "What the map looks like without a file.",
         ),
         PortSpec::new(
             "stops",
@@ -124,7 +141,10 @@ static SPEC: NodeSpec = NodeSpec {
         .uniform()
         .range(Range::hard(i32::MIN as f32, i32::MAX as f32).with_soft(0.0, 100.0)),
     ],
-    output: OutputType::Stops,
+    output: OutputType::Picture {
+        file: "file",
+        named: "signature",
+    },
     class: |_| Behaviour::Function,
     example: r##"{
   "version": 1,
@@ -149,18 +169,21 @@ pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 /// The smallest width of a map.
 const NARROWEST: f32 = 1e-3;
 
-/// What a map looks like: everything but its place.
-struct Look {
-    shape: String,
-    interpolation: Shape,
-    stops: Stops,
-    count: u32,
-    rotate: f32,
-    center: [f32; 2],
-    seed: u32,
+/// The most texels of a picture along a side of its domain: four of each sample of the map.
+const DENSEST: usize = 4;
+
+/// A map: what it shows, and where.
+struct Map {
+    picture: Picture,
     low: [f32; 2],
     width: [f32; 2],
     periodic: bool,
+}
+
+/// What a map shows in the unit square.
+enum Picture {
+    File(Arc<Texels>),
+    Shape(Shape),
 }
 
 fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
@@ -170,45 +193,39 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
         [numbers[0], numbers[1]]
     };
     let (low, high) = (pair("low"), pair("high"));
-    let stops = lower.stops(node, "stops").clone();
-    let look = Look {
-        shape: lower.choice(node, "shape").to_owned(),
-        interpolation: match lower.choice(node, "interpolation") {
-            "constant" => Shape::Constant,
-            "smooth" => Shape::Smooth,
-            _ => Shape::Linear,
-        },
-        count: lower.integer(node, "count").unsigned_abs(),
-        rotate: lower.float(node, "rotate").to_radians(),
-        center: pair("center"),
-        seed: lower.integer(node, "seed") as u32,
-        low,
-        width: [0, 1].map(|i| {
-            let width: f32 = high[i] - low[i];
-            if width.abs() < NARROWEST {
-                NARROWEST.copysign(width)
-            } else {
-                width
-            }
-        }),
-        periodic: lower.choice(node, "addressmode") == "periodic",
-        stops,
+    let width = [0, 1].map(|i| {
+        let width: f32 = high[i] - low[i];
+        if width.abs() < NARROWEST {
+            NARROWEST.copysign(width)
+        } else {
+            width
+        }
+    });
+    let picture = match lower.picture(node, "file") {
+        Some(file) => {
+            let (planes, key) = planes(lower, node, &file, node.ty);
+            let make = || Texels::of(&planes);
+            Picture::File(lower.once(&format!("texels {key}"), make))
+        }
+        None => Picture::Shape(Shape::of(lower, node)),
     };
-    let ranges: Vec<[f32; 2]> = (0..look.stops.ty.components())
-        .map(|i| {
-            let values = look.stops.stops.iter().map(|stop| stop.value[i]);
-            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| {
-                [low.min(value), high.max(value)]
-            })
-        })
-        .collect();
-    let domain = look.domain([&x, &y]);
+    let map = Map {
+        picture,
+        low,
+        width,
+        periodic: lower.choice(node, "addressmode") == "periodic",
+    };
+    let ranges = match &map.picture {
+        Picture::File(texels) => texels.ranges().to_vec(),
+        Picture::Shape(shape) => shape.ranges(),
+    };
+    let domain = map.domain([&x, &y]);
     lower.map(node, [&x, &y], domain, &ranges, move |b, module, place| {
-        look.value(b, module, place)
+        map.value(b, module, place)
     })
 }
 
-impl Look {
+impl Map {
     /// Where the map is sampled: one period, or what the signals reach of the map and of half a map
     /// around it.
     fn domain(&self, signals: [&Signal; 2]) -> Domain {
@@ -232,9 +249,21 @@ impl Look {
                 reached
             }
         });
+        let detail = match &self.picture {
+            Picture::Shape(_) => 1,
+            Picture::File(texels) => {
+                let texels = [0, 1].map(|i| {
+                    let [from, to] = bounds[i];
+                    let maps = (to - from) / self.width[i].abs();
+                    (texels.size()[i] as f32 * maps / Domain::SAMPLES as f32).ceil()
+                });
+                (texels[0].max(texels[1]) as usize).clamp(1, DENSEST)
+            }
+        };
         Domain {
             bounds,
             periodic: self.periodic,
+            detail,
         }
     }
 
@@ -251,85 +280,9 @@ impl Look {
                 b.clamp(p, 0.0, 1.0 - 1e-6)
             }
         });
-        let t = match self.shape.as_str() {
-            "bands" => {
-                let (sine, cosine) = self.rotate.sin_cos();
-                let (cosine, sine) = (b.f32(cosine), b.f32(sine));
-                let across = b.dot(&p, &[cosine, sine]);
-                self.repeated(b, across)
-            }
-            "rings" => {
-                let from = [0, 1].map(|i| b.offset(p[i], -self.center[i]));
-                let square = b.dot(&from, &from);
-                let distance = b.sqrt(square);
-                let distance = b.scale(distance, 2.0);
-                self.repeated(b, distance)
-            }
-            _ => self.nearest(b, module, p),
-        };
-        (0..self.stops.ty.components())
-            .map(|i| {
-                let stops: Vec<_> = (self.stops.stops.iter())
-                    .map(|stop| (b.f32(stop.at), b.f32(stop.value[i])))
-                    .collect();
-                Piecewise::ramp(b, &stops, self.interpolation).value(b, t)
-            })
-            .collect()
-    }
-
-    fn repeated(&self, b: &mut Builder, x: Value) -> Value {
-        let x = b.scale(x, self.count as f32);
-        let whole = b.floor(x);
-        b.sub(x, whole)
-    }
-
-    /// The stops' place of the site that is nearest to p; in a periodic map, through its edges.
-    fn nearest(&self, b: &mut Builder, module: &mut Module, p: [Value; 2]) -> Value {
-        let sites: Vec<f32> = (0..self.count).flat_map(|i| self.site(i)).collect();
-        let table = module.table("sites", sites);
-        let mut turn = Builder::new("nearer", "One more site of a Voronoi diagram.");
-        let index = turn.param("index", Scalar::U32);
-        let (least, best) = (turn.param_f32("least"), turn.param_f32("best"));
-        let p_of = ["x", "y"].map(|name| turn.param_f32(name));
-        let two = turn.u32(2);
-        let first = turn.mul_u(index, two);
-        let one = turn.u32(1);
-        let second = turn.add_u(first, one);
-        let from = [(p_of[0], first), (p_of[1], second)].map(|(p, at)| {
-            let site = turn.load(table, at);
-            let from = turn.sub(p, site);
-            if self.periodic {
-                let shifted = turn.offset(from, 0.5);
-                let whole = turn.floor(shifted);
-                turn.sub(from, whole)
-            } else {
-                from
-            }
-        });
-        let distance = turn.dot(&from, &from);
-        let nearer = turn.lt(distance, least);
-        let least = turn.min(distance, least);
-        let number = turn.float_u(index);
-        let number = turn.offset(number, 0.5);
-        let number = turn.scale(number, 1.0 / self.count as f32);
-        let best = turn.select(nearer, number, best);
-        turn.result("least", least);
-        turn.result("best", best);
-        let turn = turn.finish(module);
-        let (count, far, none) = (b.u32(self.count), b.f32(1e9), b.f32(0.0));
-        b.fold(&turn, count, &[far, none], &p)[1]
-    }
-
-    /// The place of site i in the map.
-    fn site(&self, i: u32) -> [f32; 2] {
-        [0, 1].map(|axis| {
-            let mut x = self.seed ^ (2 * i + axis).wrapping_mul(0x9e37_79b1);
-            for _ in 0..2 {
-                x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
-                x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
-                x ^= x >> 16;
-            }
-            (x >> 8) as f32 / (1u32 << 24) as f32
-        })
+        match &self.picture {
+            Picture::File(texels) => texels.at(b, module, p, self.periodic),
+            Picture::Shape(shape) => shape.at(b, module, p, self.periodic),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Nodes that treat each component alone, and the operations that several of them share.
 
-use mipless_codegen::ir::Value;
+use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::moments::{Reciprocal, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Default, Node, PortSpec, PortType, Range};
@@ -88,12 +88,18 @@ pub(crate) fn product(lower: &mut Lower<'_>, x: &Signal, y: &Signal) -> Signal {
     let b = lower.b();
     // A position keeps its integer cell where the other factor is the number.
     if y.cell.is_none() && y.is_certain(b) {
-        return x.scale(b, y.mean);
+        return scaled(b, x, y);
     }
     if x.cell.is_none() && x.is_certain(b) {
-        return y.scale(b, x.mean);
+        return scaled(b, y, x);
     }
     lower.algebra.product(x, y)
+}
+
+/// X times a number, which bounds it where both are bounded, an input of the graph too.
+fn scaled(b: &mut Builder, x: &Signal, by: &Signal) -> Signal {
+    let range = x.range_of_product(by);
+    x.scale(b, by.mean).with_range(range)
 }
 
 /// X / Y: the product with the reciprocal, which is linear where Y is certain.

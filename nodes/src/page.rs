@@ -117,6 +117,9 @@ fn output_text(output: OutputType) -> &'static str {
         OutputType::Widest | OutputType::Whole => "the widest of the inputs'",
         OutputType::Named(_) => "the type that is named",
         OutputType::Stops => "that of the stops' values",
+        OutputType::Picture { .. } => {
+            "with a file the type that is named, else that of the stops' values"
+        }
     }
 }
 
@@ -142,6 +145,7 @@ fn describe_node(def: &NodeDef) -> Value {
         OutputType::Widest | OutputType::Whole => "widest",
         OutputType::Named(_) => "named",
         OutputType::Stops => "stops",
+        OutputType::Picture { .. } => "named or stops",
     };
     // An example that is no JSON would fail the tests; tools then get its text.
     let example: Value =

@@ -8,4 +8,5 @@ pub(crate) mod planes;
 pub(crate) mod port;
 pub(crate) mod pyramid;
 pub(crate) mod read;
+pub(crate) mod texels;
 pub(crate) mod tiling;

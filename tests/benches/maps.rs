@@ -65,6 +65,7 @@ fn waves(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let domain = Domain {
         bounds: [[0.0, 1.0]; 2],
         periodic: true,
+        detail: 1,
     };
     lower.map(
         node,

@@ -83,20 +83,22 @@ fn inputs(random: &mut Random, spec: &NodeSpec, made: &[Made]) -> (Map<String, V
         };
         inputs.insert(port.name.to_owned(), value);
     }
+    let named = |port: &str| {
+        let default = spec.inputs.iter().find(|input| input.name == port);
+        let default = default.map(|input| match input.default {
+            mipless_graph::Default::Choice(name) => name,
+            other => panic!("{other:?} of {} names no type", spec.name),
+        });
+        let written = inputs.get(port).and_then(Value::as_str);
+        let name = written.or(default).expect("a choice");
+        Type::by_name(name).expect("a type")
+    };
     let ty = match spec.output {
         OutputType::Exactly(ty) => ty,
         OutputType::Widest | OutputType::Whole => widest,
-        OutputType::Named(port) => {
-            let default = spec.inputs.iter().find(|input| input.name == port);
-            let default = default.map(|input| match input.default {
-                mipless_graph::Default::Choice(name) => name,
-                other => panic!("{other:?} of {} names no type", spec.name),
-            });
-            let written = inputs.get(port).and_then(Value::as_str);
-            let name = written.or(default).expect("a choice");
-            Type::by_name(name).expect("a type")
-        }
-        OutputType::Stops => stops,
+        OutputType::Named(port) => named(port),
+        OutputType::Picture { file, named: port } if inputs.contains_key(file) => named(port),
+        OutputType::Picture { .. } | OutputType::Stops => stops,
     };
     (inputs, ty)
 }

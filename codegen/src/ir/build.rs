@@ -466,13 +466,13 @@ impl Builder {
 
 impl Module {
     /// A further table; returns its index for [`Builder::load`]. Equal data is stored once.
-    pub fn table(&mut self, name: impl Into<String>, data: Vec<f32>) -> u32 {
-        let name = name.into();
-        let same = |t: &Table| t.name == name && *t.data == *data;
+    pub fn table(&mut self, name: impl Into<String>, data: impl Into<Numbers>) -> u32 {
+        let (name, data) = (name.into(), data.into());
+        let same = |t: &Table| t.name == name && t.data == data;
         if let Some(same) = self.tables.iter().position(same) {
             return same as u32;
         }
-        self.push_table(name, data.into())
+        self.push_table(name, data)
     }
 
     /// A further table, whatever others hold.

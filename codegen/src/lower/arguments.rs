@@ -17,6 +17,15 @@ impl Arguments {
         let footprint = FOOTPRINT.map(|(name, ty)| b.param(name, ty));
         let position =
             symbols::reads_position(graph).then(|| POSITION.map(|(name, ty)| b.param(name, ty)));
+        Self {
+            footprint,
+            position,
+            parameters: Self::parameters(b, graph),
+        }
+    }
+
+    /// The inputs of the graph as parameters of a function.
+    pub(super) fn parameters(b: &mut Builder, graph: &Graph) -> Vec<Value> {
         let mut parameters = Vec::new();
         for parameter in &graph.parameters {
             let components = parameter.ty.components();
@@ -36,11 +45,7 @@ impl Arguments {
                 parameters.push(b.param(name, ty));
             }
         }
-        Self {
-            footprint,
-            position,
-            parameters,
-        }
+        parameters
     }
 
     pub(super) fn all(&self) -> Vec<Value> {

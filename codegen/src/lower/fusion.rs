@@ -3,7 +3,10 @@
 //! 0.16 against 0.038).
 //!
 //! A region is entered at the last signal that more than one thing shapes, or at a source. What a
-//! live parameter shapes cannot be baked and is closed node by node.
+//! live parameter shapes cannot be baked: where it scales or shifts what is still Gaussian, the
+//! region is entered behind it; where it comes after the last bend, the region ends before it; in
+//! between, or where the amplitude of the noise itself is live, the region is averaged where it
+//! runs, by [`super::taps`].
 
 use super::{Arguments, Bundle, Compiler, Lower, Options};
 use crate::cpu::{Evaluator, Input, Scratch};
@@ -31,7 +34,7 @@ pub(super) struct Chain {
     /// Whether no live parameter shapes it.
     pub(super) fixed: bool,
     /// The period of the function, where the entry is not bounded but the function repeats.
-    period: Option<f32>,
+    pub(super) period: Option<f32>,
 }
 
 /// What a node that is read is known to be.
@@ -46,7 +49,7 @@ pub(super) enum Known {
 
 impl Chain {
     /// The values of the entry that matter, if they are bounded.
-    fn domain(&self) -> Option<[f32; 2]> {
+    pub(super) fn domain(&self) -> Option<[f32; 2]> {
         if let Some(period) = self.period {
             return Some([0.0, period]);
         }
@@ -103,6 +106,10 @@ impl Lower<'_> {
             self.chains[index] = self.wave(node, period);
             return None;
         }
+        // An affine function of a Gaussian that a parameter shapes is the entry of what follows.
+        if bends == 0 && !before.fixed && self.enters(index, &before, closed) {
+            return None;
+        }
         // Beyond this many bends the result is the entry of what follows: a chain of 10,000 nodes
         // stays linear.
         if bends < LONGEST {
@@ -111,12 +118,17 @@ impl Lower<'_> {
                 ..before.clone()
             });
         }
-        let domain = before.domain()?;
         let long = self.algebra.knots > MOST_KNOTS;
-        if !self.algebra.bent || (before.bends == 0 && !long) || !before.fixed {
+        if !self.algebra.bent || (before.bends == 0 && !long) {
             return None;
         }
-        Some(self.tabulated(index, closed, node, &before, domain))
+        match before.domain() {
+            Some(domain) if before.fixed => {
+                Some(self.tabulated(index, closed, node, &before, domain))
+            }
+            _ if before.bends > 0 => self.tapped(index, closed, &before),
+            _ => None,
+        }
     }
 
     /// The chain that a periodic function of a scalar begins.

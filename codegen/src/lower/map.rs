@@ -67,19 +67,31 @@ fn function(module: &mut Module, name: &str, build: &Build) -> FunctionRef {
     b.finish(module)
 }
 
-/// The components of the module's entry, a function of two numbers, over a domain.
+/// The components of the module's entry, a function of two numbers, over a domain: each sample is
+/// the average over its places.
 pub(super) fn sampled(module: &Module, domain: Domain) -> Vec<Vec<f32>> {
     let evaluator = Evaluator::<f64>::new(module);
     let mut scratch = Scratch::new();
+    let detail = domain.detail;
     let mut components: Vec<Vec<f32>> = Vec::new();
     let mut values: Vec<Vec<f64>> = Vec::new();
     for row in 0..SIDE {
-        let [x, y] = domain.row(row);
-        let inputs = [Input::Floats(&x), Input::Floats(&y)];
-        evaluator.evaluate(&mut scratch, &inputs, SIDE, &mut values);
-        components.resize_with(values.len(), || Vec::with_capacity(SIDE * SIDE));
-        for (component, values) in components.iter_mut().zip(&values) {
-            component.extend(values.iter().map(|&v| v as f32));
+        let mut sums: Vec<Vec<f64>> = Vec::new();
+        for part in 0..detail {
+            let [x, y] = domain.row(row * detail + part);
+            let inputs = [Input::Floats(&x), Input::Floats(&y)];
+            evaluator.evaluate(&mut scratch, &inputs, x.len(), &mut values);
+            sums.resize_with(values.len(), || vec![0.0; SIDE]);
+            for (sums, values) in sums.iter_mut().zip(&values) {
+                for (sum, values) in sums.iter_mut().zip(values.chunks(detail)) {
+                    *sum += values.iter().sum::<f64>();
+                }
+            }
+        }
+        components.resize_with(sums.len(), || Vec::with_capacity(SIDE * SIDE));
+        let share = 1.0 / (detail * detail) as f64;
+        for (component, sums) in components.iter_mut().zip(&sums) {
+            component.extend(sums.iter().map(|&sum| (sum * share) as f32));
         }
     }
     components

@@ -24,11 +24,11 @@ use std::sync::{Arc, LazyLock};
 /// The most functions that are not linear in one region.
 const LONGEST: u32 = 12;
 /// How far, relative to the region's values, the closed form may be off.
-const TOLERANCE: f32 = 0.02;
+pub(super) const TOLERANCE: f32 = 0.02;
 /// How many shapes of regions of one graph are measured: a graph of 10,000 nodes stays quick.
-const MEASURED: usize = 48;
+pub(super) const MEASURED: usize = 48;
 /// A range is this many standard deviations of a noise.
-const DEVIATIONS: f32 = 10.0;
+pub(super) const DEVIATIONS: f32 = 10.0;
 
 /// That a node is a function of two scalar signals alone.
 #[derive(Clone, Debug)]
@@ -121,17 +121,18 @@ impl Lower<'_> {
         let known = compiler.gains.borrow().get(&shape).copied();
         let gains = known.unwrap_or_else(|| {
             let measured = compiler.gains.borrow().len() < MEASURED;
-            let gains = measured && gains(compiler, index, &before);
+            let gains = usize::from(measured && gains(compiler, index, &before));
             compiler.gains.borrow_mut().insert(shape, gains);
             gains
         });
-        if !gains {
+        if gains == 0 {
             return None;
         }
         let [x, y] = entries.map(|entry| Rc::clone(&entry.signal));
         let domain = Domain {
             bounds: [x.range, y.range],
             periodic: false,
+            detail: 1,
         };
         let ranges: Vec<[f32; 2]> = closed.iter().map(|signal| signal.range).collect();
         let key = format!("pair {index}");
@@ -359,12 +360,9 @@ fn point_function(
 /// A hash of all that the region's function and its entries depend on: regions of one shape are
 /// measured once.
 fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
-    let mut hasher = FxHasher::default();
-    let mut places: FxHashMap<usize, usize> = FxHashMap::default();
     let From::Node(first) = pair.first.from else {
         panic!("a pair begins with a node")
     };
-    places.insert(first.index(), 0);
     let mut nodes = Vec::new();
     let second = match pair.second.from {
         From::Node(second) => second,
@@ -373,10 +371,31 @@ fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
             sum
         }
     };
-    places.insert(second.index(), 1);
-    nodes.extend(region(compiler, index, &[first, second]));
+    let entries = [first, second];
+    nodes.extend(region(compiler, index, &entries));
+    let mut hasher = hashed(compiler, &entries, &nodes);
+    for entry in [&pair.first, &pair.second] {
+        for number in [
+            entry.signal.range[0],
+            entry.signal.range[1],
+            entry.deviation,
+        ] {
+            number.to_bits().hash(&mut hasher);
+        }
+    }
+    matches!(pair.second.from, From::Node(_)).hash(&mut hasher);
+    hasher.finish()
+}
+
+/// A hash of the nodes of a region with what they read; entries count by their places.
+pub(super) fn hashed(compiler: &Compiler<'_>, entries: &[NodeId], nodes: &[usize]) -> FxHasher {
+    let mut hasher = FxHasher::default();
+    let mut places: FxHashMap<usize, usize> = FxHashMap::default();
+    for (place, entry) in entries.iter().enumerate() {
+        places.insert(entry.index(), place);
+    }
     nodes.len().hash(&mut hasher);
-    for index in nodes {
+    for &index in nodes {
         let node = &compiler.graph.nodes[index];
         node.definition.hash(&mut hasher);
         node.ty.hash(&mut hasher);
@@ -390,17 +409,7 @@ fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
         let place = places.len();
         places.insert(index, place);
     }
-    for entry in [&pair.first, &pair.second] {
-        for number in [
-            entry.signal.range[0],
-            entry.signal.range[1],
-            entry.deviation,
-        ] {
-            number.to_bits().hash(&mut hasher);
-        }
-    }
-    matches!(pair.second.from, From::Node(_)).hash(&mut hasher);
-    hasher.finish()
+    hasher
 }
 
 /// Whether the closed form of the region is off by more than [`TOLERANCE`] under one of a few

@@ -58,22 +58,30 @@ pub struct Domain {
     pub bounds: [[f32; 2]; 2],
     /// Whether it repeats.
     pub periodic: bool,
+    /// At how many places along each axis the function is evaluated for one of the [`SIDE`] samples:
+    /// more than 1 where it has detail that they would miss.
+    pub detail: usize,
 }
 
 impl Domain {
+    /// Samples along each side.
+    pub const SAMPLES: usize = SIDE;
+
     fn widths(&self) -> [f32; 2] {
         self.bounds.map(|[low, high]| high - low)
     }
 
-    /// Where row `row` of the samples is: first numbers, then the second numbers.
+    /// Where row `row` of the places is, [`SIDE`] times the detail of them each way: first numbers,
+    /// then the second numbers.
     pub(crate) fn row(&self, row: usize) -> [Vec<f32>; 2] {
+        let side = SIDE * self.detail;
         let at = |axis: usize, i: usize| {
             let [low, high] = self.bounds[axis].map(f64::from);
-            (low + (high - low) * (i as f64 + 0.5) / SIDE as f64) as f32
+            (low + (high - low) * (i as f64 + 0.5) / side as f64) as f32
         };
         [
-            (0..SIDE).map(|i| at(0, i)).collect(),
-            vec![at(1, row); SIDE],
+            (0..side).map(|i| at(0, i)).collect(),
+            vec![at(1, row); side],
         ]
     }
 }

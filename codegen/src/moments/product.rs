@@ -54,7 +54,7 @@ impl Algebra {
                 out.push_shared(*symbol, coefficient);
             }
         }
-        out.range = product_range(x.range, y.range);
+        out.range = x.range_of_product(y);
         out.binary = product_binary(b, x, y);
         self.attach_fresh(&mut out, remainder);
         out
@@ -287,14 +287,18 @@ fn product_binary(b: &mut Builder, x: &Signal, y: &Signal) -> Option<[Value; 2]>
     Some([-product, product].map(|v| b.f32(v)))
 }
 
-fn product_range(x: [f32; 2], y: [f32; 2]) -> [f32; 2] {
-    if x.iter().chain(&y).any(|e| !e.is_finite()) {
-        return UNBOUNDED;
+impl Signal {
+    /// The bounds of the product with another signal.
+    pub fn range_of_product(&self, other: &Self) -> [f32; 2] {
+        let (x, y) = (self.range, other.range);
+        if x.iter().chain(&y).any(|e| !e.is_finite()) {
+            return UNBOUNDED;
+        }
+        let corners = [x[0] * y[0], x[0] * y[1], x[1] * y[0], x[1] * y[1]];
+        corners
+            .iter()
+            .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &c| {
+                [low.min(c), high.max(c)]
+            })
     }
-    let corners = [x[0] * y[0], x[0] * y[1], x[1] * y[0], x[1] * y[1]];
-    corners
-        .iter()
-        .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], &c| {
-            [low.min(c), high.max(c)]
-        })
 }

@@ -399,6 +399,8 @@ fn node(
         OutputType::Widest | OutputType::Whole => common,
         OutputType::Named(port) => named(spec, &inputs, port),
         OutputType::Stops => stops,
+        OutputType::Picture { file, .. } if text(spec, &inputs, file).is_empty() => stops,
+        OutputType::Picture { named: port, .. } => named(spec, &inputs, port),
     };
     let pointer = template.node_pointer(index);
     let id = NodeId(position_u32(graph.nodes.len()));
@@ -471,10 +473,14 @@ fn common_type(
 
 /// The type that a choice names.
 fn named(spec: &NodeSpec, inputs: &[Input], port: &str) -> Type {
-    let chosen = spec.input(port).map(|index| &inputs[index].source);
-    match chosen {
-        Some(Source::Literal(Literal::Text(name))) => Type::by_name(name),
-        _ => None,
+    Type::by_name(text(spec, inputs, port))
+        .unwrap_or_else(|| panic!("`{port}` of {} names types", spec.name))
+}
+
+/// What a uniform text says.
+fn text<'a>(spec: &NodeSpec, inputs: &'a [Input], port: &str) -> &'a str {
+    match spec.input(port).map(|index| &inputs[index].source) {
+        Some(Source::Literal(Literal::Text(text))) => text,
+        _ => panic!("`{port}` of {} is a text", spec.name),
     }
-    .unwrap_or_else(|| panic!("`{port}` of {} names types", spec.name))
 }

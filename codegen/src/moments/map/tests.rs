@@ -17,6 +17,7 @@ fn map(module: &mut Module, periodic: bool, build: fn(&mut Builder, [Value; 2]) 
     let domain = Domain {
         bounds: [[0.0, 1.0]; 2],
         periodic,
+        detail: 1,
     };
     let grid: Grid = Arc::new(LazyLock::new(Box::new(move || {
         let mut module = Module::default();
