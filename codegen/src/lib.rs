@@ -10,4 +10,7 @@ pub mod moments;
 pub mod target;
 pub mod wgsl;
 
-pub use lower::{Bundle, Lower, Method, NodeDef, Options, ParseMethodError, PixelFilter, compile};
+pub use lower::{
+    Bundle, Lower, Method, NodeDef, Options, Over, ParseMethodError, PixelFilter, Upstream,
+    Widened, compile,
+};
