@@ -11,6 +11,6 @@ pub mod target;
 pub mod wgsl;
 
 pub use lower::{
-    Bundle, Lower, Method, NodeDef, NodeRule, Options, ParseMethodError, PartNames, PixelFilter,
-    compile,
+    Bundle, Lower, Method, NodeDef, NodeRule, Options, Over, ParseMethodError, PartNames,
+    PixelFilter, Upstream, Widened, compile,
 };

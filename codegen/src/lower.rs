@@ -17,9 +17,11 @@ mod sampling;
 mod symbols;
 mod table;
 mod taps;
+mod upstream;
 
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
+pub use upstream::{Over, Upstream, Widened};
 
 use crate::ir::{Builder, FunctionRef, Interface, Library, Module, Port, Program, Value};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
@@ -158,6 +160,10 @@ impl InputView for Varying {
 
     fn number(&self, _: &str) -> f32 {
         1.0
+    }
+
+    fn in_space(&self, _: &str) -> bool {
+        false
     }
 
     fn stops(&self, _: &str) -> Vec<[f32; 2]> {

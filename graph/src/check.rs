@@ -46,6 +46,8 @@ pub struct Signal {
     /// dimensionless; the error of the sources' own filtering is not in it. An estimate from
     /// measured cascades, not a bound.
     pub error: f32,
+    /// Whether it depends on the position in space.
+    space: bool,
     /// Why it has this class.
     reason: Reason,
     /// The input that decided the class, unless the node did.
@@ -117,6 +119,15 @@ fn varies(signals: &[Signal], input: &Input) -> bool {
     }
 }
 
+/// Whether an input depends on the position in space.
+fn in_space(signals: &[Signal], input: &Input) -> bool {
+    match input.source {
+        Source::Node(node) => signals[node.index()].space,
+        Source::Surface => input.ty == Type::Vector3,
+        Source::Literal(_) | Source::Parameter(_) => false,
+    }
+}
+
 impl InputView for View<'_> {
     fn varies(&self, port: &str) -> bool {
         varies(self.signals, self.node.input(port))
@@ -144,6 +155,10 @@ impl InputView for View<'_> {
             Literal::Integer(number) => *number as f32,
             other => other.numbers()[0],
         }
+    }
+
+    fn in_space(&self, port: &str) -> bool {
+        in_space(self.signals, self.node.input(port))
     }
 
     fn stops(&self, port: &str) -> Vec<[f32; 2]> {
@@ -183,8 +198,10 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
                 });
             }
         }
+        let position = behaviour == Behaviour::Position && node.ty == Type::Vector3;
+        let space = position || node.inputs.iter().any(|input| in_space(&signals, input));
         let signal = class::signal(id, node, behaviour, &incoming);
-        signals.push(signal);
+        signals.push(Signal { space, ..signal });
         if !needed[index] {
             continue;
         }

@@ -279,6 +279,9 @@ pub trait InputView {
     fn choice(&self, port: &str) -> &str;
     /// The number of a uniform port.
     fn number(&self, port: &str) -> f32;
+    /// Whether the input depends on the surface's position in space, which no footprint in texture
+    /// space moves.
+    fn in_space(&self, port: &str) -> bool;
     /// The stops of a uniform port, as places and the means of their values' components.
     fn stops(&self, port: &str) -> Vec<[f32; 2]>;
 }
@@ -313,5 +316,16 @@ impl NodeSpec {
     /// The position of the input of that name.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|port| port.name == name)
+    }
+
+    /// The outputs beside `out`, and the position of the input that selects among them: a node with
+    /// a choice named `output` has each of its names as an output, and `out` is the one that the
+    /// input names.
+    pub fn selector(&self) -> Option<(usize, &'static [&'static str])> {
+        let position = self.input("output")?;
+        match self.inputs[position].ty {
+            PortType::Choice(names) => Some((position, names)),
+            _ => None,
+        }
     }
 }

@@ -98,6 +98,20 @@ static FRACTAL: NodeSpec = NodeSpec {
         |_| Behaviour::Gaussian { deviation: 0.0046 },
     )
 };
+static CELLS: NodeSpec = spec(
+    "cells",
+    &[
+        TEXCOORD,
+        PortSpec::new(
+            "output",
+            PortType::Choice(&["F1", "F2"]),
+            Default::Choice("F1"),
+            "Which distance.",
+        ),
+    ],
+    FLOAT,
+    |_| Behaviour::Random { deviation: 0.04 },
+);
 static ADD: NodeSpec = spec(
     "add",
     &[any("in1", 0.0), any("in2", 0.0)],
@@ -186,6 +200,7 @@ static LUMINANCE: NodeSpec = spec(
 pub(crate) static SPECS: &[&NodeSpec] = &[
     &TEXCOORD_NODE,
     &FRACTAL,
+    &CELLS,
     &ADD,
     &MULTIPLY,
     &DIVIDE,

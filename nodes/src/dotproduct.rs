@@ -9,7 +9,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "dotproduct",
-    aliases: &["dot", "dot_product"],
+    aliases: &["dot_product"],
     category: Category::Arithmetic,
     summary: "The sum of the products of components.",
     doc: Doc {

@@ -7,14 +7,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "extract",
-    aliases: &[
-        "separate",
-        "separate_rgb",
-        "separate_color",
-        "decompose",
-        "channel",
-        "swizzle",
-    ],
+    aliases: &["channel", "swizzle", "channel_select"],
     category: Category::Channel,
     summary: "One component of a vector or colour.",
     doc: Doc {

@@ -13,6 +13,7 @@ mod noise;
 mod page;
 mod pattern;
 mod picture;
+mod separate;
 mod vector;
 
 mod absval;
@@ -23,6 +24,7 @@ mod atan;
 mod atan2;
 mod bias;
 mod blackbody;
+mod blur;
 mod brick;
 mod brightness;
 mod burn;
@@ -32,6 +34,7 @@ mod cellnoise2d;
 mod checkerboard;
 mod circle;
 mod clamp;
+mod cloverleaf;
 mod colorcorrect;
 mod colormap2d;
 mod colorramp;
@@ -42,6 +45,7 @@ mod constant;
 mod contrast;
 mod convert;
 mod cos;
+mod crosshatch;
 mod crossproduct;
 mod darken;
 mod difference;
@@ -49,6 +53,7 @@ mod disjointover;
 mod distance;
 mod divide;
 mod dodge;
+mod dot;
 mod dotproduct;
 mod exp;
 mod extract;
@@ -62,6 +67,7 @@ mod gradientangular;
 mod gradientradial;
 mod grid;
 mod hardlight;
+mod heighttonormal;
 mod hexagon;
 mod hsvadjust;
 mod hsvtorgb;
@@ -111,9 +117,13 @@ mod repeat;
 mod rgbtohsv;
 mod ridged2d;
 mod rotate2d;
+mod rotate3d;
 mod round;
 mod saturate;
 mod screen;
+mod separate2;
+mod separate3;
+mod separate4;
 mod shape;
 mod sign;
 mod sin;
@@ -134,12 +144,14 @@ mod switch;
 mod tan;
 mod texcoord;
 mod tiledcircles;
+mod tiledcloverleafs;
 mod tiledhexagons;
 mod trianglewave;
 mod turbulence2d;
 mod unpremult;
 mod valuenoise2d;
 mod warp;
+mod wave;
 mod whitenoise2d;
 mod worleynoise2d;
 
@@ -174,6 +186,8 @@ static CATALOGUE: &[NodeDef] = &[
     brick::DEF,
     checkerboard::DEF,
     circle::DEF,
+    cloverleaf::DEF,
+    crosshatch::DEF,
     gradientangular::DEF,
     gradientradial::DEF,
     grid::DEF,
@@ -188,7 +202,9 @@ static CATALOGUE: &[NodeDef] = &[
     splittb::DEF,
     stripes::DEF,
     tiledcircles::DEF,
+    tiledcloverleafs::DEF,
     tiledhexagons::DEF,
+    wave::DEF,
     // Arithmetic.
     add::DEF,
     atan2::DEF,
@@ -277,14 +293,21 @@ static CATALOGUE: &[NodeDef] = &[
     polar::DEF,
     repeat::DEF,
     rotate2d::DEF,
+    rotate3d::DEF,
     swirl::DEF,
     warp::DEF,
     // Channel.
+    blur::DEF,
     combine2::DEF,
     combine3::DEF,
     combine4::DEF,
     convert::DEF,
+    dot::DEF,
     extract::DEF,
+    heighttonormal::DEF,
+    separate2::DEF,
+    separate3::DEF,
+    separate4::DEF,
 ];
 
 /// The node definitions, in the order of the reference pages: what codegen compiles with.

@@ -43,6 +43,14 @@ pub fn page(def: &NodeDef) -> String {
         "| `out` | {} | – | – | – | The result. |",
         output_text(spec.output)
     ));
+    if let Some((_, names)) = spec.selector() {
+        for name in names {
+            line(format_args!(
+                "| `{name}` | {} | – | – | – | The result where `output` is `{name}`. |",
+                output_text(spec.output)
+            ));
+        }
+    }
     line(format_args!("\n## Statistics\n\n{}", spec.doc.statistics));
     line(format_args!("\n## Accuracy\n\n{}", spec.doc.accuracy));
     line(format_args!(
@@ -147,6 +155,10 @@ fn describe_node(def: &NodeDef) -> Value {
         OutputType::Stops => "stops",
         OutputType::Picture { .. } => "named or stops",
     };
+    let others = spec.selector().map_or(&[][..], |(_, names)| names);
+    let outputs: Map<String, Value> = (["out"].iter().chain(others))
+        .map(|name| ((*name).to_owned(), json!({ "type": output })))
+        .collect();
     // An example that is no JSON would fail the tests; tools then get its text.
     let example: Value =
         serde_json::from_str(spec.example).unwrap_or_else(|_| Value::from(spec.example));
@@ -155,7 +167,7 @@ fn describe_node(def: &NodeDef) -> Value {
         "aliases": spec.aliases,
         "summary": spec.summary,
         "inputs": inputs,
-        "outputs": { "out": { "type": output } },
+        "outputs": outputs,
         "doc": {
             "computes": spec.doc.computes,
             "statistics": spec.doc.statistics,

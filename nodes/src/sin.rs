@@ -10,7 +10,7 @@ use crate::componentwise::{transfer, unary};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "sin",
-    aliases: &["sine", "wave", "math_sine"],
+    aliases: &["sine", "math_sine"],
     category: Category::Transfer,
     summary: "The sine of a signal in radians.",
     doc: Doc {

@@ -12,14 +12,7 @@ use crate::rotate2d::turn;
 
 static SPEC: NodeSpec = NodeSpec {
     name: "stripes",
-    aliases: &[
-        "wave_texture",
-        "bands",
-        "pattern",
-        "x_wave",
-        "y_wave",
-        "lines",
-    ],
+    aliases: &["bands", "lines"],
     category: Category::Pattern,
     summary: "Parallel stripes of 0 and 1.",
     doc: Doc {

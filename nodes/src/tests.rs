@@ -1,5 +1,6 @@
 //! Laws that every node keeps, and the far fields that are known.
 
+mod channel;
 mod color;
 mod combination;
 mod law;

@@ -363,7 +363,7 @@ impl Library {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ir::Op;
+    use crate::ir::{Inst, Op};
 
     const PRODUCT: SharedFunction = SharedFunction {
         name: "weighted",

@@ -311,6 +311,7 @@ pub(super) fn signal(
         reason,
         decided_by,
         entries,
+        space: false,
     }
 }
 

@@ -18,6 +18,8 @@ enum Made {
     /// Something wrong, which is reported; whatever needs it is wrong without another report.
     Nothing,
     Node(NodeId, Type),
+    /// A node of which other outputs than `out` are read: one node of the graph each.
+    Several(Vec<(u32, Option<(NodeId, Type)>)>),
     /// The outputs of a sub-graph.
     Graph(Vec<Option<(NodeId, Type)>>),
 }
@@ -90,8 +92,14 @@ pub(super) fn expand(
         match template.nodes[index].kind {
             Kind::Broken => {}
             Kind::Spec(definition) => {
-                let made = node(context, &mut graph, template, frame, index, definition);
-                frame.made[index] = made.map_or(Made::Nothing, |(id, ty)| Made::Node(id, ty));
+                let mut make = |output: u32| {
+                    let of = (definition, output);
+                    node(context, &mut graph, template, frame, index, of)
+                };
+                frame.made[index] = match &template.nodes[index].outputs[..] {
+                    [] | [0] => make(0).map_or(Made::Nothing, |(id, ty)| Made::Node(id, ty)),
+                    outputs => Made::Several(outputs.iter().map(|&i| (i, make(i))).collect()),
+                };
             }
             Kind::Graph(inner) => {
                 let prefix = format!("{}{}/", frame.prefix, template.nodes[index].name);
@@ -154,6 +162,7 @@ impl Made {
         match self {
             Self::Nothing => None,
             Self::Node(node, ty) => Some((*node, *ty)),
+            Self::Several(made) => made.iter().find(|(i, _)| *i == output)?.1,
             Self::Graph(outputs) => outputs.get(output as usize).copied().flatten(),
         }
     }
@@ -292,14 +301,14 @@ fn sub_graph_inputs(
     bounds
 }
 
-/// Makes a node.
+/// Makes a node that gives one output of an entry.
 fn node(
     context: &mut Context<'_>,
     graph: &mut Graph,
     template: &Template<'_>,
     frame: &Frame,
     index: usize,
-    definition: usize,
+    (definition, output): (usize, u32),
 ) -> Option<(NodeId, Type)> {
     let spec = context.specs[definition];
     let entry = &template.nodes[index];
@@ -402,10 +411,16 @@ fn node(
         OutputType::Picture { file, .. } if text(spec, &inputs, file).is_empty() => stops,
         OutputType::Picture { named: port, .. } => named(spec, &inputs, port),
     };
+    let mut name = path;
+    if let (Some(choice), Some((position, names))) = (output.checked_sub(1), spec.selector()) {
+        let choice = names[choice as usize];
+        name = format!("{name}.{choice}");
+        inputs[position].source = Source::Literal(Literal::Text(choice.to_owned()));
+    }
     let pointer = template.node_pointer(index);
     let id = NodeId(position_u32(graph.nodes.len()));
     graph.nodes.push(Node {
-        name: path,
+        name,
         pointer,
         definition,
         spec,

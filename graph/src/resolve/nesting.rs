@@ -81,7 +81,7 @@ fn count(context: &mut Context<'_>, templates: &[Template<'_>], sorted: &[u32]) 
                     nodes[used]
                 }
                 // The limit holds whether or not the node is otherwise right.
-                Kind::Spec(_) | Kind::Broken => 1,
+                Kind::Spec(_) | Kind::Broken => node.outputs.len().max(1) as u64,
             };
             nodes[position] = nodes[position].saturating_add(more);
         }

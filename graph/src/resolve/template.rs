@@ -32,6 +32,8 @@ pub(super) struct TemplateNode<'d> {
     /// What is connected or written, by the position of the port in the spec (of the input in the
     /// sub-graph).
     pub(super) wires: Vec<(u32, Wire<'d>)>,
+    /// The outputs that are read, where the node has several; empty for `out` alone.
+    pub(super) outputs: Vec<u32>,
 }
 
 /// What a node is.
@@ -45,7 +47,8 @@ pub(super) enum Kind {
     Broken,
 }
 
-/// An output of a node of the same body.
+/// An output of a node of the same body: of a node of the catalogue, 0 for `out`, then those that
+/// its choice `output` names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Port {
     pub(super) node: u32,
@@ -127,6 +130,7 @@ fn template<'d>(
             name,
             kind: Kind::Broken,
             wires: Vec::new(),
+            outputs: Vec::new(),
         };
         template.nodes.push(node);
         let index = template.nodes.len() - 1;
@@ -141,6 +145,7 @@ fn template<'d>(
         let port = self::reference(context, document, &template, reference, &place);
         template.outputs.push(port);
     }
+    select(context, &mut template);
     if body.outputs.is_empty() {
         let at = format!("{}/outputs", template.pointer);
         let help = "write `\"outputs\": { \"base_color\": { \"node\": NAME } }`";
@@ -148,6 +153,26 @@ fn template<'d>(
         context.report(Diagnostic::error("no-outputs", message).at(at).help(help));
     }
     template
+}
+
+/// Notes which outputs of nodes with several are read.
+fn select(context: &Context<'_>, template: &mut Template<'_>) {
+    let wires = template.nodes.iter().flat_map(|node| &node.wires);
+    let wired = wires.filter_map(|(_, wire)| match wire {
+        Wire::Node(port) => Some(*port),
+        _ => None,
+    });
+    let ports: Vec<Port> = wired
+        .chain(template.outputs.iter().flatten().copied())
+        .collect();
+    for port in ports {
+        let node = &mut template.nodes[port.node as usize];
+        let several =
+            matches!(node.kind, Kind::Spec(spec) if context.specs[spec].selector().is_some());
+        if several && !node.outputs.contains(&port.output) {
+            node.outputs.push(port.output);
+        }
+    }
 }
 
 fn kind(
@@ -289,7 +314,10 @@ fn reference(
         return None;
     };
     let output = match template.nodes[node].kind {
-        Kind::Spec(_) => (reference.output == "out").then_some(0),
+        Kind::Spec(_) if reference.output == "out" => Some(0),
+        Kind::Spec(spec) => (context.specs[spec].selector())
+            .and_then(|(_, names)| names.iter().position(|name| *name == reference.output))
+            .map(|position| position + 1),
         Kind::Graph(graph) => document.graphs[graph - 1]
             .outputs
             .get_index_of(&reference.output),
@@ -304,7 +332,14 @@ fn reference(
                     .map(String::as_str);
                 context.nearest(&reference.output, names)
             }
-            _ => Some("its output is `out`".to_owned()),
+            Kind::Spec(spec) => match context.specs[spec].selector() {
+                Some((_, names)) => {
+                    let names: Vec<&str> = ["out"].iter().chain(names).copied().collect();
+                    context.nearest(&reference.output, names.iter().copied())
+                }
+                None => Some("its output is `out`".to_owned()),
+            },
+            Kind::Broken => None,
         };
         let message = format!("`{}` has no output `{}`", reference.node, reference.output);
         let place = place.clone();

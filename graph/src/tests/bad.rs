@@ -81,6 +81,22 @@ fn a_type_one_letter_off_and_an_alias_are_suggested() {
 }
 
 #[test]
+fn an_output_that_a_node_does_not_have_is_named() {
+    let found = errors(
+        r#"{ "version": 1, "name": "x", "nodes": { "c": { "type": "cells" } },
+             "outputs": { "o": { "node": "c", "output": "f2" }, "p": { "node": "c", "output": "distance" } } }"#,
+    );
+    let wanted = [
+        ("unknown-output", "/outputs/o"),
+        ("unknown-output", "/outputs/p"),
+    ];
+    assert_eq!(places(&found), wanted);
+    assert_eq!(found[0].help.as_deref(), Some("did you mean `F2`?"));
+    let all = "one of `out`, `F1`, `F2`";
+    assert_eq!(found[1].help.as_deref(), Some(all));
+}
+
+#[test]
 fn every_mistake_of_one_file_is_reported_once() {
     let found = errors(
         r#"{

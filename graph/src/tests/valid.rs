@@ -110,6 +110,32 @@ fn sub_graphs_expand_with_their_inputs() {
 }
 
 #[test]
+fn outputs_that_are_read_are_nodes() {
+    let graph = graph(&text(
+        r#""nodes": { "c": { "type": "cells", "inputs": { "output": "F2" } },
+                "d": { "type": "add", "inputs": { "in1": { "node": "c", "output": "F2" },
+                                                  "in2": { "node": "c", "output": "F1" } } } },
+           "outputs": { "o": { "node": "d" }, "p": { "node": "c" }, "q": { "node": "c", "output": "F1" } }"#,
+    ));
+    let nodes: Vec<(&str, &str)> = (graph.nodes.iter())
+        .map(|node| {
+            let chosen = node.spec.input("output").map(|_| node.literal("output"));
+            let chosen = match chosen {
+                Some(Literal::Text(text)) => text,
+                _ => "",
+            };
+            (node.name.as_str(), chosen)
+        })
+        .collect();
+    assert_eq!(
+        nodes,
+        [("c.F2", "F2"), ("c.F1", "F1"), ("c", "F2"), ("d", "")]
+    );
+    assert_eq!(graph.outputs[1].node, crate::NodeId(2));
+    assert_eq!(graph.outputs[2].node, crate::NodeId(1));
+}
+
+#[test]
 fn what_is_unused_is_a_warning() {
     let loaded = load(
         &text(

@@ -1,5 +1,7 @@
 //! Filtered patterns against dense sums of the pattern itself.
 
+mod upstream;
+
 use crate::{catalogue, specs};
 use mipless_codegen::cpu::{Footprint, eval_program};
 use mipless_codegen::{Method, Options, PixelFilter, compile};
@@ -70,9 +72,14 @@ fn quantile(table: &[f64], p: f64) -> f64 {
 
 const STEP: f64 = 1e-3;
 
-/// Mean and variance of the point values over a footprint, by the R2 sequence (Roberts 2018) of
-/// normal numbers: an edge is met by the same share of the points in any direction.
+/// Mean and variance of the point values of the first component over a footprint.
 fn dense(text: &str, footprints: &[Footprint], points: usize) -> Vec<[f64; 2]> {
+    dense_components(text, footprints, points).swap_remove(0)
+}
+
+/// The same of each component, by the R2 sequence (Roberts 2018) of normal numbers: an edge is met by
+/// the same share of the points in any direction.
+fn dense_components(text: &str, footprints: &[Footprint], points: usize) -> Vec<Vec<[f64; 2]>> {
     let mut mass = 0.0;
     let table: Vec<f64> = (0..12_000)
         .map(|i| {
@@ -102,13 +109,14 @@ fn dense(text: &str, footprints: &[Footprint], points: usize) -> Vec<[f64; 2]> {
             });
         }
     }
-    let values = &evaluated(text, Method::Point, &samples)[0];
-    (values.chunks(points))
-        .map(|chunk| {
-            let mean = chunk.iter().sum::<f64>() / chunk.len() as f64;
-            let square = chunk.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
-            [mean, square / chunk.len() as f64]
-        })
+    let values = evaluated(text, Method::Point, &samples);
+    let moments = |chunk: &[f64]| {
+        let mean = chunk.iter().sum::<f64>() / chunk.len() as f64;
+        let square = chunk.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+        [mean, square / chunk.len() as f64]
+    };
+    (values[..values.len() / 2].iter())
+        .map(|component| component.chunks(points).map(moments).collect())
         .collect()
 }
 
@@ -271,6 +279,25 @@ fn figures_are_filtered_exactly() {
     held("line", &json!({}), 1.0, bound);
     let thin = json!({ "radius": 0.02, "point1": [0.9, 0.1], "point2": [0.2, 0.4] });
     held("line", &thin, 1.0, bound);
+}
+
+#[test]
+fn waves_are_filtered_exactly() {
+    for shape in ["sine", "triangle", "saw", "square"] {
+        let inputs = json!({ "shape": shape, "frequency": 1, "rotate": 25, "phase": 0.1 });
+        held("wave", &inputs, 1.0, [[tolerance(); 2]; 2]);
+    }
+}
+
+#[test]
+fn hatches_and_leaves_are_filtered_exactly() {
+    let bound = [[tolerance(); 2]; 2];
+    held("crosshatch", &json!({ "thickness": 0.25 }), 1.0, bound);
+    held("cloverleaf", &json!({ "center": [0.4, 0.6] }), 1.0, bound);
+    let across = [[tolerance(); 2], [0.01; 2]];
+    held("tiledcloverleafs", &json!({ "size": 0.8 }), 1.0, across);
+    let staggered = json!({ "size": 0.9, "staggered": true });
+    held("tiledcloverleafs", &staggered, 1.0, across);
 }
 
 #[test]

@@ -1,0 +1,46 @@
+//! A knot in a wire.
+
+use crate::componentwise::unary;
+use mipless_codegen::NodeDef;
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "dot",
+    aliases: &["reroute", "pass_through", "relay"],
+    category: Category::Channel,
+    summary: "Its input as it is, with a note.",
+    doc: Doc {
+        computes: "out = in. For editors, whose wires bend at it; the note is for readers.",
+        statistics: "Exact: the signal as it is.",
+        accuracy: "Exact; no code is generated for it. Held by `nodes/src/tests/channel.rs`.",
+        references: "MaterialX 1.39 specification, node `dot`.",
+    },
+    inputs: &[
+        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
+        PortSpec::new(
+            "note",
+            PortType::Exactly(Type::String),
+            Default::Text(""),
+            "Whatever is to be said.",
+        ),
+    ],
+    output: OutputType::Widest,
+    class: |_| Behaviour::Linear,
+    example: r#"{
+  "version": 1,
+  "name": "dot_example",
+  "nodes": {
+    "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
+    "dot": { "type": "dot", "inputs": { "in": { "node": "bands" }, "note": "to the mask" } }
+  },
+  "outputs": { "out": { "node": "dot" } }
+}"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef {
+    spec: &SPEC,
+    lower: |lower, node| unary(lower, node, "in", |_, x| x.clone()),
+};
