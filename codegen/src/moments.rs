@@ -17,6 +17,7 @@
 //!   0 and vanish when the function is built.
 //! - What no result reads does not exist: a moment that is not demanded is dead code.
 
+mod branch;
 mod cubature;
 mod curve;
 mod extremum;
@@ -38,6 +39,7 @@ mod wave;
 
 use crate::ir::{Builder, Value};
 
+pub(crate) use branch::Branch;
 pub use curve::Curve;
 pub use map::Domain;
 pub(crate) use map::{Grid, Map, SIDE};

@@ -256,6 +256,15 @@ pub enum Behaviour {
     Product,
     /// A non-linear function of its varying inputs.
     Function,
+    /// A non-linear function of its varying inputs whose rule is off by a large part of the result
+    /// somewhere.
+    Rough {
+        /// The root mean square over footprints of 0.06 to 1 wavelengths, relative to the
+        /// function's range, measured.
+        error: f32,
+        /// Where and why, as what follows the node's name in a sentence.
+        place: &'static str,
+    },
     /// A non-linear function of position alone, filtered in closed form.
     Pattern,
     /// No statistics, for this reason.

@@ -37,7 +37,16 @@ static SPEC: NodeSpec = NodeSpec {
         "The colour, linear Rec. 709.",
     )],
     output: OutputType::Exactly(Type::Color3),
-    class: |_| Behaviour::Function,
+    class: |inputs| {
+        if inputs.varies("in") {
+            Behaviour::Rough {
+                error: 0.11,
+                place: "has a hue that is off by up to a quarter of a turn near grey and at red",
+            }
+        } else {
+            Behaviour::Function
+        }
+    },
     example: r#"{
   "version": 1,
   "name": "rgbtohsv_example",

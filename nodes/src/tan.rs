@@ -48,7 +48,10 @@ pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 /// Of a number, a number.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("in") {
-        Behaviour::Unknown("the tangent of a random angle has no moments")
+        Behaviour::Unknown(
+            "the tangent of an angle that varies passes its poles, where neither mean nor variance \
+             exist; between two poles a `colorramp` of the angle can take its place",
+        )
     } else {
         Behaviour::Function
     }

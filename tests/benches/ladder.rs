@@ -25,7 +25,7 @@ const METHODS: [Method; 8] = [
 ];
 
 /// Name, the map's node `o` (with what it needs) over the noise `n`, and its range.
-const MAPS: [(&str, &str, f32); 6] = [
+const MAPS: [(&str, &str, f32); 8] = [
     (
         "smooth: ½ + ½ sin 2x",
         r#""s":{"type":"multiply","inputs":{"in1":{"node":"n"},"in2":2}},"o":{"type":"sin","inputs":{"in":{"node":"s"}}}"#,
@@ -35,6 +35,16 @@ const MAPS: [(&str, &str, f32); 6] = [
         "smoothstep from −2 to 2",
         r#""o":{"type":"smoothstep","inputs":{"in":{"node":"n"},"low":-2,"high":2}}"#,
         1.0,
+    ),
+    (
+        "smoothstep from −1.5 to 1.5",
+        r#""o":{"type":"smoothstep","inputs":{"in":{"node":"n"},"low":-1.5,"high":1.5}}"#,
+        1.0,
+    ),
+    (
+        "smooth: ½ + ½ sin x",
+        r#""o":{"type":"sin","inputs":{"in":{"node":"n"}}}"#,
+        2.0,
     ),
     (
         "ramp",

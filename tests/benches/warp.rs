@@ -48,7 +48,7 @@ fn main() {
     }
     let heads: Vec<String> = METHODS.iter().map(ToString::to_string).collect();
     println!(
-        "| noise | wavelength of the displacement | footprint | {} |",
+        "| noise, its frequency | wavelength of the displacement | footprint | {} |",
         heads.join(" | ")
     );
     println!("|---|---|---|{}", "---|".repeat(METHODS.len()));
@@ -56,6 +56,8 @@ fn main() {
         ("spectralnoise2d", 1.0, 3.0),
         ("spectralnoise2d", 1.0, 1.0),
         ("noise2d", 1.53, 3.0),
+        // Of the mean frequency, 0.686 a cell, that the band of the spectral noise has, 1.02.
+        ("noise2d", 1.487, 3.0),
         ("noise2d", 1.53, 1.0),
     ] {
         let texture = Texture::from_json(&graph(source, frequency, longer))
@@ -66,7 +68,10 @@ fn main() {
             .collect();
         for (size, row) in SIZES.iter().zip(rows) {
             let cells: Vec<String> = row.iter().map(|error| format!("{error:.4}")).collect();
-            println!("| {source} | {longer} | {size} | {} |", cells.join(" | "));
+            println!(
+                "| {source}, {frequency} | {longer} | {size} | {} |",
+                cells.join(" | ")
+            );
         }
     }
 }

@@ -9,6 +9,7 @@
 //! | `stability` | no footprint, however extreme, gives anything but a finite number in range |
 //! | `properties` | random graphs and mutilated documents |
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
+//! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `tidy` | the order of the house: arrows, generated files, names |
 
 pub mod case;

@@ -31,6 +31,14 @@ pub const SIGNIFICANCE: f64 = 1e-3;
 /// distributions from a Gaussian (0.0046 of each jump, four jumps in a ramp).
 pub const FAR_FIELD: f64 = 0.02;
 
+/// The error that the check predicts is an estimate from measured cascades over all footprints. What
+/// is measured is at most the first times it, and it is at most the second times what is measured.
+pub const PREDICTED: [f64; 2] = [1.25, 4.0];
+
+/// What filtering the sources themselves is off by, and the samples of the truth: no prediction has
+/// it.
+pub const SOURCE: f64 = 0.01;
+
 /// The two-sided p-value of a standard normal number, from above: Mills' ratio is at most 1/z.
 pub fn p_value(z: f64) -> f64 {
     let z = z.abs();

@@ -11,7 +11,7 @@
 use super::{Arguments, Bundle, Compiler, Lower, Options};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
-use crate::moments::{Algebra, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
+use crate::moments::{Algebra, Branch, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
 use mipless_graph::{Node, NodeId, Source};
 use std::rc::Rc;
 use std::sync::{Arc, LazyLock};
@@ -240,6 +240,9 @@ impl Lower<'_> {
         let function = self.function(&format!("fused {index}"), |module| {
             function(compiler, module, index, entry)
         });
+        let branch = Branch(self.function(&format!("fused {index} branch"), |module| {
+            Branch::new(module, &name, &function, 1).0
+        }));
         (closed.iter().enumerate())
             .map(|(i, signal)| {
                 let name = if closed.len() > 1 {
@@ -247,7 +250,7 @@ impl Lower<'_> {
                 } else {
                     name.clone()
                 };
-                let of = (function.clone(), i);
+                let of = (function.clone(), branch.clone(), i);
                 let bounds = (domain, periodic, signal.range);
                 let table = Tabulated::new(self.module, levels, &name, of, bounds, &samples);
                 self.algebra.transfer(&chain.signal, &table)

@@ -2,7 +2,7 @@
 
 use super::{Lower, PixelFilter, identifier};
 use crate::ir::{Builder, Numbers};
-use crate::moments::{Sampled, Samples, Tabulated, sample_points};
+use crate::moments::{Branch, Sampled, Samples, Tabulated, sample_points};
 use mipless_graph::{Node, Picture};
 use std::any::Any;
 use std::sync::{Arc, LazyLock};
@@ -105,6 +105,7 @@ impl Lower<'_> {
         let value = b.add(from, part);
         b.result("value", value);
         let of = b.finish(self.module);
+        let branch = Branch::new(self.module, &identifier(name), &of, 1);
         let samples: Samples = Arc::new(LazyLock::new(Box::new(move || {
             let points = sample_points(domain).into_iter();
             let values = points.map(|x| function(x.into())).collect();
@@ -116,7 +117,7 @@ impl Lower<'_> {
             self.module,
             levels,
             &identifier(name),
-            (of, 0),
+            (of, branch, 0),
             bounds,
             &samples,
         );

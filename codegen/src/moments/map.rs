@@ -17,8 +17,9 @@ mod pack;
 mod read;
 mod split;
 
+use super::branch::Branch;
 use super::{Algebra, Mode, Signal};
-use crate::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
+use crate::ir::{Builder, FunctionRef, Module, Numbers, Value};
 use pack::Packing;
 use std::sync::{Arc, LazyLock};
 
@@ -107,8 +108,7 @@ const MOMENTS: [(Moment, &str); 4] = [
 pub(crate) struct Map {
     /// Gives the components of two numbers.
     function: FunctionRef,
-    /// The function as the body of a fold of at most one turn: it is evaluated only where needed.
-    branch: FunctionRef,
+    branch: Branch,
     domain: Domain,
     /// The least and largest value of each component.
     ranges: Vec<[f32; 2]>,
@@ -147,7 +147,7 @@ impl Map {
             read::bilinear(module, &format!("{name}_{suffix}_at"), tables[i], &packing)
         };
         let readers = [of(0), of(1), of(2), of(3)];
-        let branch = branch(module, name, &function);
+        let branch = Branch::new(module, name, &function, 2);
         Self {
             function,
             branch,
@@ -175,23 +175,6 @@ fn layout(packing: &Packing) -> Vec<f32> {
         first += texels(level);
     }
     rows
-}
-
-/// The function as the body of a fold of at most one turn.
-fn branch(module: &mut Module, name: &str, function: &FunctionRef) -> FunctionRef {
-    let mut b = Builder::new(
-        format!("{name}_point"),
-        "The state becomes the map's value at a point.",
-    );
-    b.param("index", Type::U32);
-    for i in 0..function.results.len() {
-        b.param_f32(format!("state_{i}"));
-    }
-    let (x, y) = (b.param_f32("x"), b.param_f32("y"));
-    for (i, &value) in b.call(function, &[x, y]).iter().enumerate() {
-        b.result(format!("state_{i}"), value);
-    }
-    b.finish(module)
 }
 
 impl Algebra {

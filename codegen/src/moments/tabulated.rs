@@ -5,6 +5,7 @@
 //! §6: 8.7 KB a moment, largest error 14/1000 on ten-stripe maps). The k-th derivative of the mean
 //! is stored as σᵏ E[T⁽ᵏ⁾] = E[T Heₖ(z)], the distortion as its root.
 
+use super::branch::Branch;
 use super::{Gaussian, Moments, Transfer};
 use crate::ir::{Builder, FunctionRef, Module, Numbers, Value};
 use std::sync::{Arc, LazyLock};
@@ -224,6 +225,7 @@ pub(crate) type Samples = Arc<LazyLock<Vec<Sampled>, Box<dyn Fn() -> Vec<Sampled
 #[derive(Clone, Debug)]
 pub struct Tabulated {
     function: FunctionRef,
+    branch: Branch,
     component: usize,
     domain: [f32; 2],
     periodic: bool,
@@ -245,12 +247,13 @@ impl Tabulated {
         module.table("pyramid_levels", layout)
     }
 
-    /// `levels` is the table that [`Self::levels`] made; `function` takes a number and gives the components; `range` bounds this one.
+    /// `levels` is the table that [`Self::levels`] made; the
+    /// function takes a number and gives the components; `range` bounds this one.
     pub(crate) fn new(
         module: &mut Module,
         levels: u32,
         name: &str,
-        (function, component): (FunctionRef, usize),
+        (function, branch, component): (FunctionRef, Branch, usize),
         (domain, periodic, range): ([f32; 2], bool, [f32; 2]),
         samples: &Samples,
     ) -> Self {
@@ -264,6 +267,7 @@ impl Tabulated {
         });
         Self {
             function,
+            branch,
             component,
             domain,
             periodic,
@@ -376,7 +380,7 @@ impl Transfer for Tabulated {
         let place = self.place(b, x);
         let read = |b: &mut Builder, moment| self.read(b, &place, moment);
         let mean = read(b, Moment::Mean);
-        let exact = self.value(b, x.mean);
+        let exact = self.branch.taken(b, place.below, &[x.mean])[self.component];
         let near = lerp(b, exact, mean, place.share);
         let mean = b.select(place.below, near, mean);
         // What is stored is relative to σ; below σ₀ the derivatives are those at σ₀.

@@ -1,8 +1,8 @@
 //! The class of a node's output from how the node behaves and what reaches it.
 
 use super::closure::{
-    CLOSED, FUNCTION_DEVIATION, FUSED_ONE, FUSED_TWO, PRODUCT_DEVIATION, SUMMED, WARPED,
-    WARPED_DEVIATION, together,
+    CLOSED, FUNCTION_DEVIATION, FUSED, PRODUCT_DEVIATION, SUMMED, WARPED, WARPED_DEVIATION,
+    together,
 };
 use super::{Correlation, Signal, Sources};
 use crate::{Behaviour, Graph, Node, NodeId};
@@ -149,6 +149,7 @@ pub(super) enum Reason {
     LinearOfFunctions,
     FunctionOfGaussians,
     TooManyGaussians,
+    Rough(&'static str),
     FunctionOfPattern(&'static str),
     MomentsIn(&'static str),
     UnknownIn(&'static str),
@@ -207,6 +208,7 @@ impl Reason {
             Self::TooManyGaussians => format!(
                 "`{name}` is a non-linear function of more than two Gaussians: closed by its moments"
             ),
+            Self::Rough(place) => format!("`{name}` {place}"),
             Self::FunctionOfPattern(port) => format!(
                 "`{port}` of `{name}`, {}, is a pattern, whose values are far from Gaussian: closed \
                  by its moments",
@@ -362,6 +364,13 @@ fn outcome(id: NodeId, node: &Node, behaviour: Behaviour, incoming: &[Incoming])
         Behaviour::Product if incoming.len() == 1 => linear(id, components, incoming),
         Behaviour::Product => function(incoming, PRODUCT_DEVIATION),
         Behaviour::Function => function(incoming, FUNCTION_DEVIATION),
+        Behaviour::Rough { error, place } => {
+            let deviation = FUNCTION_DEVIATION;
+            let closed = function(incoming, deviation);
+            Outcome::new(Class::Moments { deviation }, Reason::Rough(place))
+                .by(closed.decided_by)
+                .error(closed.error.hypot(error))
+        }
     }
 }
 
@@ -496,10 +505,8 @@ fn function(incoming: &[Incoming], deviation: f32) -> Outcome {
             // the others, a function of a function is fused anew.
             let fused = if entries.iter().all(|entry| entry.position) {
                 0.0
-            } else if gaussians == 1 {
-                FUSED_ONE
             } else {
-                FUSED_TWO
+                FUSED
             };
             let own = incoming
                 .iter()

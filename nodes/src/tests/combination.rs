@@ -178,6 +178,46 @@ fn smooth_maxima() {
 }
 
 #[test]
+fn powers_whose_exponent_varies() {
+    let inputs: &[Inputs<'static>] = &[
+        &[(0.5, &[0.1]), (2.0, &[0.1, 0.3])],
+        &[(0.6, &[0.15]), (0.8, &[0.0, 0.2])],
+        &[(1.5, &[0.3]), (2.5, &[-0.2, 0.4])],
+    ];
+    Law {
+        node: json!({ "type": "power", "inputs": { "in1": { "node": "x0" }, "in2": { "node": "x1" } } }),
+        exact: &|x: &[f64]| vec![x[0].max(0.0).powf(x[1])],
+        inputs,
+        tolerances: [2e-3, 2e-3],
+    }
+    .check();
+}
+
+#[test]
+fn linear_nodes_are_exact() {
+    Law {
+        node: json!({ "type": "invert", "inputs": { "in": { "node": "x0" }, "amount": 0.7 } }),
+        exact: &|x: &[f64]| vec![0.7 - x[0]],
+        inputs: TWO,
+        tolerances: [1e-5, 1e-5],
+    }
+    .check();
+    let point = json!({ "p": { "type": "combine2", "inputs": { "in1": { "node": "x0" }, "in2": { "node": "x1" } } } });
+    let inputs = json!({ "in": { "node": "p" }, "amount": 30 });
+    Law {
+        node: json!({ "type": "rotate2d", "inputs": inputs, "extra_nodes": point }),
+        exact: &|x: &[f64]| {
+            let (sine, cosine) = 30f64.to_radians().sin_cos();
+            vec![x[0] * cosine - x[1] * sine, x[0] * sine + x[1] * cosine]
+        },
+        inputs: TWO,
+        // What the integration of two numbers errs by.
+        tolerances: [2e-4, 2e-4],
+    }
+    .check();
+}
+
+#[test]
 fn conditions_without_spread_are_exact() {
     let of = |node: Value| super::moments(json!({ "y": node }), "y").0;
     let condition = |name: &str, value: f64| {

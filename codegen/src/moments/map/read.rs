@@ -147,7 +147,7 @@ impl Map {
         let weighted = |b: &mut Builder, values: &[Vec<Value>], component: usize| {
             taps.weighted(b, values, component)
         };
-        let points = self.point(b, mean, taps.below);
+        let points = self.branch.taken(b, taps.below, &mean);
         (0..self.packing.components())
             .map(|i| {
                 let tapped = weighted(b, &means, i);
@@ -219,14 +219,6 @@ impl Map {
         let most = b.max(most, limit);
         let factor = b.div(limit, most);
         covariance.map(|v| b.mul(v, factor))
-    }
-
-    /// The function itself where the footprint is smaller than the finest σ.
-    fn point(&self, b: &mut Builder, mean: [Value; 2], below: Value) -> Vec<Value> {
-        let (none, once, zero) = (b.u32(0), b.u32(1), b.f32(0.0));
-        let count = b.select(below, once, none);
-        let init = vec![zero; self.packing.components()];
-        b.fold(&self.branch, count, &init, &mean)
     }
 
     fn taps(
