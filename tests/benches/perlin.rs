@@ -1,10 +1,16 @@
-//! Perlin noise, unfiltered, against the crates `noise` and `fastnoise-lite`: one thread, one run.
+//! Perlin noise, unfiltered, against the crates `noise` and `fastnoise-lite` and against the same
+//! noise written by hand: one thread, one run.
 //!
-//! `cargo bench -p mipless-tests --bench perlin`
+//! `cargo bench -p mipless-tests --bench perlin`. The loop by hand gives the same numbers, which is
+//! checked, and so bounds what a native kernel for this source would gain.
+
+#[path = "perlin/native.rs"]
+mod native;
 
 use mipless_codegen::cpu::{Evaluator, Input, Scratch};
 use mipless_codegen::{Method, Options, PixelFilter, compile};
 use mipless_graph::{CheckOptions, check, load};
+use native::Row;
 use noise::NoiseFn as _;
 use std::hint::black_box;
 use std::time::Instant;
@@ -30,7 +36,31 @@ fn time(work: &mut dyn FnMut()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-fn ours() -> impl FnMut() {
+/// The pixels as the evaluator takes them.
+struct Pixels {
+    cells: [Vec<i32>; 2],
+    fractions: [Vec<f32>; 2],
+}
+
+impl Pixels {
+    fn new() -> Self {
+        let places: Vec<[f32; 2]> = (0..SIDE * SIDE).map(place).collect();
+        Self {
+            cells: [0, 1].map(|k| places.iter().map(|p| p[k].floor() as i32).collect()),
+            fractions: [0, 1].map(|k| places.iter().map(|p| p[k].fract()).collect()),
+        }
+    }
+
+    fn row(&self, row: usize) -> Row<'_> {
+        let at = row * SIDE..(row + 1) * SIDE;
+        Row {
+            cells: [0, 1].map(|k| &self.cells[k][at.clone()]),
+            fractions: [0, 1].map(|k| &self.fractions[k][at.clone()]),
+        }
+    }
+}
+
+fn evaluator() -> Evaluator<f32> {
     let catalogue = mipless_nodes::catalogue();
     let specs: Vec<_> = catalogue.iter().map(|d| d.spec).collect();
     let graph = load(GRAPH, &specs).graph.expect("the graph loads");
@@ -41,31 +71,65 @@ fn ours() -> impl FnMut() {
         moments: false,
         seed: 0,
     };
-    let program = compile(&checked, catalogue, &options);
-    let evaluator = Evaluator::<f32>::of_program(&program);
-    let places: Vec<[f32; 2]> = (0..SIDE * SIDE).map(place).collect();
-    let cells: [Vec<i32>; 2] = [0, 1].map(|k| places.iter().map(|p| p[k].floor() as i32).collect());
-    let uv: [Vec<f32>; 2] = [0, 1].map(|k| places.iter().map(|p| p[k].fract()).collect());
-    let zero = vec![0.0; SIDE * SIDE];
+    Evaluator::<f32>::of_program(&compile(&checked, catalogue, &options))
+}
+
+fn evaluated(
+    evaluator: &Evaluator<f32>,
+    scratch: &mut Scratch<f32>,
+    row: Row<'_>,
+    outputs: &mut Vec<Vec<f32>>,
+) {
+    let zero = Input::Float(0.0);
+    let inputs = [
+        Input::Integers(row.cells[0]),
+        Input::Integers(row.cells[1]),
+        Input::Floats(row.fractions[0]),
+        Input::Floats(row.fractions[1]),
+        zero,
+        zero,
+        zero,
+        zero,
+    ];
+    evaluator.evaluate(scratch, black_box(&inputs), SIDE, outputs);
+}
+
+fn ours() -> impl FnMut() {
+    let (evaluator, pixels) = (evaluator(), Pixels::new());
     let (mut scratch, mut outputs) = (Scratch::new(), Vec::new());
     move || {
         for row in 0..SIDE {
-            let at = row * SIDE..(row + 1) * SIDE;
-            let flat = Input::Floats(&zero[at.clone()]);
-            let inputs = [
-                Input::Integers(&cells[0][at.clone()]),
-                Input::Integers(&cells[1][at.clone()]),
-                Input::Floats(&uv[0][at.clone()]),
-                Input::Floats(&uv[1][at.clone()]),
-                flat,
-                flat,
-                flat,
-                flat,
-            ];
-            evaluator.evaluate(&mut scratch, black_box(&inputs), SIDE, &mut outputs);
+            evaluated(&evaluator, &mut scratch, pixels.row(row), &mut outputs);
             black_box(&outputs);
         }
     }
+}
+
+fn by_hand() -> impl FnMut() {
+    let (kernel, pixels) = (native::kernel(), Pixels::new());
+    let mut out = vec![0.0; SIDE];
+    move || {
+        for row in 0..SIDE {
+            kernel(black_box(pixels.row(row)), &mut out);
+            black_box(&out);
+        }
+    }
+}
+
+/// The largest difference between the evaluator and the loop by hand.
+fn difference() -> f32 {
+    let (evaluator, kernel, pixels) = (evaluator(), native::kernel(), Pixels::new());
+    let (mut scratch, mut outputs) = (Scratch::new(), Vec::new());
+    let mut out = vec![0.0; SIDE];
+    let mut most = 0.0f32;
+    for row in 0..SIDE {
+        evaluated(&evaluator, &mut scratch, pixels.row(row), &mut outputs);
+        kernel(pixels.row(row), &mut out);
+        for (a, b) in outputs[0].iter().zip(&out) {
+            most = most.max((a - b).abs());
+        }
+    }
+    most
 }
 
 fn by_noise() -> impl FnMut() {
@@ -104,13 +168,16 @@ fn main() {
     if std::env::args().any(|argument| argument == "--test") {
         return;
     }
-    let mut rivals: [Rival; 3] = [
+    let difference = difference();
+    assert!(difference < 1e-5, "not the same noise: {difference}");
+    let mut rivals: [Rival; 4] = [
         ("mipless", Box::new(ours())),
+        ("by hand", Box::new(by_hand())),
         ("noise", Box::new(by_noise())),
         ("fastnoise-lite", Box::new(by_fastnoise())),
     ];
     // In turn, so that a disturbed machine disturbs all; the shortest time counts.
-    let mut best = [f64::INFINITY; 3];
+    let mut best = [f64::INFINITY; 4];
     for _ in 0..200 {
         for (best, (_, work)) in best.iter_mut().zip(&mut rivals) {
             *best = best.min(time(work));
