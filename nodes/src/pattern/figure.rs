@@ -2,6 +2,7 @@
 
 use super::region::{Measure, Outline, Whitening, disc};
 use super::separable::{finished_signal, rest_of_two};
+use super::soft::{self, Edge};
 use crate::componentwise::difference;
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::ir::Value;
@@ -40,6 +41,16 @@ pub(crate) fn drawn(
     node: &Node,
     figure: impl FnOnce(&mut Lower<'_>) -> Figure,
 ) -> Bundle {
+    drawn_softly(lower, node, None, figure)
+}
+
+/// The same with an edge that is a ramp of this width.
+pub(crate) fn drawn_softly(
+    lower: &mut Lower<'_>,
+    node: &Node,
+    ramp: Option<Value>,
+    figure: impl FnOnce(&mut Lower<'_>) -> Figure,
+) -> Bundle {
     let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
     let position = [0, 1].map(|i| {
         let from = difference(lower, &texcoord[i], &centre[i]);
@@ -47,12 +58,18 @@ pub(crate) fn drawn(
     });
     let figure = figure(lower);
     let b = lower.b();
+    let ramp = ramp.filter(|&width| !b.is_zero(width));
+    let ramp = ramp.map(|width| soft::width(b, width));
     let certain = position.iter().all(|axis| axis.is_certain(b));
     let back = [b.neg(position[0].mean), b.neg(position[1].mean)];
+    let soft = ramp.map(|width| (edge(lower, &figure, back), width));
     if lower.mode() == Mode::Point || certain {
-        let value = point(lower, &figure, back);
+        let value = match &soft {
+            Some((edge, width)) => soft::value(lower.b(), edge, *width),
+            None => point(lower, &figure, back),
+        };
         let signal = Signal::certain(lower.b(), value);
-        return vec![finished_signal(lower, signal, true)];
+        return vec![finished_signal(lower, signal, soft.is_none())];
     }
     let spread = Spread::of(lower.b(), &position);
     let measure = match &figure {
@@ -68,9 +85,32 @@ pub(crate) fn drawn(
             polygon(lower, outline, back, axes, &spread)
         }
     };
-    let field = sharp(lower, measure, &spread);
+    let field = match &soft {
+        Some((edge, width)) => soft::field(lower, measure, edge, *width, &spread),
+        None => sharp(lower, measure, &spread),
+    };
     let signal = field.at(lower, &position);
-    vec![finished_signal(lower, signal, true)]
+    vec![finished_signal(lower, signal, soft.is_none())]
+}
+
+/// Where the edge is, from the mean.
+fn edge(lower: &mut Lower<'_>, figure: &Figure, back: [Value; 2]) -> Edge {
+    match figure {
+        Figure::Disc { radius } => Edge::of_disc(lower.b(), back, *radius),
+        Figure::Polygon {
+            outline,
+            axes: [a, c, e],
+        } => Edge::of_polygon(lower, outline, [back, *a, *c, *e]),
+        Figure::Line {
+            outline,
+            axes: [a, c, e],
+            from,
+        } => {
+            let b = lower.b();
+            let start = [b.add(back[0], from[0]), b.add(back[1], from[1])];
+            Edge::of_polygon(lower, outline, [start, *a, *c, *e])
+        }
+    }
 }
 
 /// A measure as the field of a figure that is 0 or 1.

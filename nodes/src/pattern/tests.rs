@@ -282,6 +282,29 @@ fn figures_are_filtered_exactly() {
 }
 
 #[test]
+fn soft_edges_have_nearly_their_means() {
+    let bounds = [
+        (0.02, [[[tolerance(), 0.015]; 2]; 3]),
+        (
+            0.2,
+            [
+                [[0.01, 0.013], [0.018, 0.02]],
+                [[0.01, 0.013], [0.022, 0.035]],
+                [[0.045, 0.045], [0.05, 0.035]],
+            ],
+        ),
+    ];
+    for (edge, [of_disc, of_polygon, of_star]) in bounds {
+        let disc = json!({ "center": [0.4, 0.6], "radius": 0.4, "edge": edge });
+        held("circle", &disc, 1.0, of_disc);
+        let polygon = json!({ "rotate": 20, "edge": edge });
+        held("shape", &polygon, 1.0, of_polygon);
+        let star = json!({ "shape": "star", "edge": edge });
+        held("shape", &star, 1.0, of_star);
+    }
+}
+
+#[test]
 fn waves_are_filtered_exactly() {
     for shape in ["sine", "triangle", "saw", "square"] {
         let inputs = json!({ "shape": shape, "frequency": 1, "rotate": 25, "phase": 0.1 });
