@@ -15,11 +15,10 @@ use super::{Arguments, Bundle, Compiler, Lower};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
-use mipless_graph::{Node, NodeId, Source};
-use rustc_hash::{FxHashMap, FxHasher};
-use std::hash::{Hash, Hasher};
+use mipless_graph::{Literal, Node, NodeId, Source, Type};
+use rustc_hash::FxHashMap;
 use std::rc::Rc;
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
 /// The most functions that are not linear in one region.
 const LONGEST: u32 = 12;
@@ -29,6 +28,9 @@ const TOLERANCE: f32 = 0.02;
 const MEASURED: usize = 48;
 /// A range is this many standard deviations of a noise.
 const DEVIATIONS: f32 = 10.0;
+
+/// What tells regions apart that are measured.
+pub(super) type Shape = Vec<u32>;
 
 /// That a node is a function of two scalar signals alone.
 #[derive(Clone, Debug)]
@@ -117,14 +119,7 @@ impl Lower<'_> {
             return None;
         }
         let compiler = self.compiler;
-        let shape = shape(compiler, index, &before);
-        let known = compiler.gains.borrow().get(&shape).copied();
-        let gains = known.unwrap_or_else(|| {
-            let measured = compiler.gains.borrow().len() < MEASURED;
-            let gains = measured && gains(compiler, index, &before);
-            compiler.gains.borrow_mut().insert(shape, gains);
-            gains
-        });
+        let gains = known_gains(compiler, index, &before);
         if !gains {
             return None;
         }
@@ -356,10 +351,10 @@ fn point_function(
     })
 }
 
-/// A hash of all that the region's function and its entries depend on: regions of one shape are
-/// measured once.
-fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
-    let mut hasher = FxHasher::default();
+/// All that the region's function and its entries depend on: regions of one shape are measured once.
+/// `None` where a file shapes it.
+fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> Option<Shape> {
+    let mut words = Vec::with_capacity(96);
     let mut places: FxHashMap<usize, usize> = FxHashMap::default();
     let From::Node(first) = pair.first.from else {
         panic!("a pair begins with a node")
@@ -375,32 +370,85 @@ fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
     };
     places.insert(second.index(), 1);
     nodes.extend(region(compiler, index, &[first, second]));
-    nodes.len().hash(&mut hasher);
+    words.push(nodes.len() as u32);
     for index in nodes {
         let node = &compiler.graph.nodes[index];
-        node.definition.hash(&mut hasher);
-        node.ty.hash(&mut hasher);
+        // Catalogues differ: a definition is the code that lowers it.
+        let code = compiler.catalogue[node.definition].lower as usize;
+        words.extend([code as u32, (code as u64 >> 32) as u32, node.ty as u32]);
         for input in &node.inputs {
-            input.ty.hash(&mut hasher);
+            words.push(input.ty as u32);
             match &input.source {
-                Source::Node(id) => places.get(&id.index()).hash(&mut hasher),
-                other => format!("{other:?}").hash(&mut hasher),
+                Source::Node(id) => {
+                    let place = places.get(&id.index());
+                    words.extend([0, place.map_or(u32::MAX, |&place| place as u32)]);
+                }
+                Source::Surface => words.push(1),
+                Source::Parameter(id) => words.extend([2, id.index() as u32]),
+                Source::Literal(Literal::Numbers(ty, numbers)) => {
+                    words.extend([3, *ty as u32]);
+                    words.extend(numbers.map(f32::to_bits));
+                }
+                Source::Literal(Literal::Integer(i)) => words.extend([4, *i as u32]),
+                Source::Literal(Literal::Boolean(b)) => words.extend([5, u32::from(*b)]),
+                Source::Literal(Literal::Text(_)) if input.ty == Type::Filename => return None,
+                Source::Literal(Literal::Text(text)) => {
+                    words.extend([6, text.len() as u32]);
+                    words.extend(text.bytes().map(u32::from));
+                }
+                Source::Literal(Literal::Stops(ramp)) => {
+                    words.extend([7, ramp.ty as u32, ramp.stops.len() as u32]);
+                    for stop in &ramp.stops {
+                        words.push(stop.at.to_bits());
+                        words.extend(stop.value.map(f32::to_bits));
+                    }
+                }
             }
         }
         let place = places.len();
         places.insert(index, place);
     }
     for entry in [&pair.first, &pair.second] {
-        for number in [
-            entry.signal.range[0],
-            entry.signal.range[1],
-            entry.deviation,
-        ] {
-            number.to_bits().hash(&mut hasher);
-        }
+        let [low, high] = entry.signal.range;
+        words.extend([low, high, entry.deviation].map(f32::to_bits));
     }
-    matches!(pair.second.from, From::Node(_)).hash(&mut hasher);
-    hasher.finish()
+    words.push(u32::from(matches!(pair.second.from, From::Node(_))));
+    Some(words)
+}
+
+/// The most measurements that a process keeps.
+const MOST: usize = 4096;
+
+/// What this process has measured: the same for every graph.
+static KNOWN: LazyLock<RwLock<FxHashMap<Shape, bool>>> = LazyLock::new(RwLock::default);
+
+/// [`gains`], measured once for each shape.
+fn known_gains(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> bool {
+    let Some(shape) = shape(compiler, index, pair) else {
+        return gains(compiler, index, pair);
+    };
+    let known = compiler.gains.borrow().get(&shape).copied();
+    if let Some(known) = known {
+        return known;
+    }
+    let within = compiler.gains.borrow().len() < MEASURED;
+    let gains = within && {
+        // The lock is free again while a shape is measured.
+        let ready = KNOWN.read().map_or_else(
+            |poisoned| poisoned.into_inner().get(&shape).copied(),
+            |known| known.get(&shape).copied(),
+        );
+        ready.unwrap_or_else(|| {
+            let gains = gains(compiler, index, pair);
+            let mut known = KNOWN.write().unwrap_or_else(PoisonError::into_inner);
+            if known.len() < MOST {
+                known.insert(shape.clone(), gains);
+            }
+            gains
+        })
+    };
+    compiler.gains.borrow_mut().insert(shape, gains);
+    gains
 }
 
 /// Whether the closed form of the region is off by more than [`TOLERANCE`] under one of a few
