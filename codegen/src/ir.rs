@@ -37,9 +37,9 @@ mod text;
 mod verify;
 
 pub use build::{Builder, FunctionRef};
-pub use function::{Body, Function, Parameter};
-pub(crate) use library::Library;
+pub use function::{Body, Function, Label, Parameter};
 pub use library::SharedFunction;
+pub(crate) use library::{Library, Shelves};
 pub(crate) use op::for_each_op;
 pub use op::{Op, OpInfo};
 pub use table::{Numbers, Table};

@@ -4,6 +4,7 @@
 //! A method that repeats the graph (`supersample`, `split`) is a fold over one function of it, and
 //! `auto` is a branch between two functions: nothing is ever unrolled.
 
+mod ahead;
 mod arguments;
 mod entry;
 mod fusion;
@@ -14,6 +15,7 @@ mod order;
 mod pair;
 mod rule;
 mod sampling;
+mod shape;
 mod symbols;
 mod table;
 mod taps;
@@ -23,7 +25,7 @@ pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
 pub use upstream::{Over, Upstream, Widened};
 
-use crate::ir::{Builder, FunctionRef, Interface, Library, Module, Port, Program, Value};
+use crate::ir::{Builder, FunctionRef, Interface, Label, Library, Module, Port, Program, Value};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use arguments::Arguments;
 use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Source, Type};
@@ -93,29 +95,8 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         moments: options.moments,
         position: symbols::reads_position(graph),
     };
-    let live = symbols::live(graph);
-    let order = order::order(graph, &live);
-    let crossed = symbols::crossed(graph);
-    let literal = symbols::literal(graph);
-    let (functions, fused) = (RefCell::default(), RefCell::default());
-    let compiler = Compiler {
-        graph,
-        catalogue,
-        options,
-        live,
-        order,
-        crossed,
-        literal,
-        functions,
-        tables: RefCell::default(),
-        made: RefCell::default(),
-        tabulated: RefCell::default(),
-        fused,
-        maps: RefCell::default(),
-        gains: RefCell::default(),
-        levels: Cell::new(None),
-        library: Library::default(),
-    };
+    let facts = Facts::of(graph);
+    let compiler = Compiler::new((graph, &facts), catalogue, options);
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
     compiler.library.link(&mut module);
@@ -171,11 +152,8 @@ impl InputView for Varying {
     }
 }
 
-/// What all functions of a compilation share.
-struct Compiler<'a> {
-    graph: &'a Graph,
-    catalogue: &'a [NodeDef],
-    options: &'a Options,
+/// What is known of a graph's nodes before they are lowered.
+struct Facts {
     /// How many live edges read each node's output.
     live: Vec<u32>,
     /// The live nodes in the order in which they are lowered.
@@ -184,6 +162,26 @@ struct Compiler<'a> {
     crossed: Vec<bool>,
     /// Whether literals alone shape each node's output.
     literal: Vec<bool>,
+}
+
+impl Facts {
+    fn of(graph: &Graph) -> Self {
+        let live = symbols::live(graph);
+        Self {
+            order: order::order(graph, &live),
+            crossed: symbols::crossed(graph),
+            literal: symbols::literal(graph),
+            live,
+        }
+    }
+}
+
+/// What all functions of a compilation share.
+struct Compiler<'a> {
+    graph: &'a Graph,
+    catalogue: &'a [NodeDef],
+    options: &'a Options,
+    facts: &'a Facts,
     /// The functions that nodes share, by their keys.
     functions: RefCell<FxHashMap<String, FunctionRef>>,
     /// The tables that nodes share, by their keys.
@@ -198,11 +196,35 @@ struct Compiler<'a> {
     maps: RefCell<FxHashMap<String, Map>>,
     /// Whether regions are worth more than their closed form, by their shapes: of two signals 1 for a
     /// map, of one signal the parts on each side of its middle; 0 for no.
-    gains: RefCell<FxHashMap<u64, usize>>,
+    gains: RefCell<FxHashMap<shape::Shape, usize>>,
     /// The table of levels that pyramids share, once there is one.
     levels: Cell<Option<u32>>,
     /// The functions that all functions share.
     library: Library,
+}
+
+impl<'a> Compiler<'a> {
+    fn new(
+        (graph, facts): (&'a Graph, &'a Facts),
+        catalogue: &'a [NodeDef],
+        options: &'a Options,
+    ) -> Self {
+        Self {
+            graph,
+            catalogue,
+            options,
+            facts,
+            functions: RefCell::default(),
+            tables: RefCell::default(),
+            made: RefCell::default(),
+            tabulated: RefCell::default(),
+            fused: RefCell::default(),
+            maps: RefCell::default(),
+            gains: RefCell::default(),
+            levels: Cell::new(None),
+            library: Library::default(),
+        }
+    }
 }
 
 /// The state of the lowering of one function of the graph; what nodes build through.
@@ -224,6 +246,10 @@ pub struct Lower<'a> {
     footprints: Vec<Value>,
     /// Whether they are what the function is for.
     measures: bool,
+    /// Which nodes nothing but their footprints is asked of.
+    only_measured: Vec<bool>,
+    /// Whether the node at work is one.
+    is_only_measured: bool,
     /// Whether a rule is being built, whose functions are the library's.
     in_rule: bool,
     /// Whether something that is not linear follows a source.
@@ -263,6 +289,8 @@ impl<'a> Lower<'a> {
             parameter_scalars,
             footprints: Vec::new(),
             measures: false,
+            only_measured: Vec::new(),
+            is_only_measured: false,
             in_rule: false,
             nonlinear: false,
         }
@@ -270,17 +298,18 @@ impl<'a> Lower<'a> {
 
     /// Lowers every live node.
     fn run(&mut self) {
-        let live = self.compiler.live.clone();
+        let live = self.compiler.facts.live.clone();
         self.run_nodes(live);
     }
 
     /// Lowers the sources and what their inputs need, for their footprints alone.
     fn run_sources(&mut self) {
         self.measures = true;
+        self.only_measured = vec![false; self.compiler.graph.nodes.len()];
         let graph = self.compiler.graph;
         let mut uses = vec![0; graph.nodes.len()];
         for (index, node) in graph.nodes.iter().enumerate().rev() {
-            let live = self.compiler.live[index] > 0;
+            let live = self.compiler.facts.live[index] > 0;
             // Whatever its inputs are, a source is Gaussian by itself.
             let source = matches!(
                 (node.spec.class)(&Varying),
@@ -289,7 +318,10 @@ impl<'a> Lower<'a> {
             if uses[index] == 0 && !(live && source) {
                 continue;
             }
-            uses[index] = uses[index].max(1);
+            if uses[index] == 0 {
+                self.only_measured[index] = true;
+                uses[index] = 1;
+            }
             for input in &node.inputs {
                 if let Source::Node(id) = input.source {
                     uses[id.index()] += 1;
@@ -303,12 +335,13 @@ impl<'a> Lower<'a> {
     fn run_nodes(&mut self, mut uses: Vec<u32>) {
         let compiler = self.compiler;
         let graph = compiler.graph;
-        for &index in &compiler.order {
+        for &index in &compiler.facts.order {
             let index = index as usize;
             let node = &graph.nodes[index];
             if uses[index] == 0 {
                 continue;
             }
+            self.is_only_measured = self.only_measured.get(index) == Some(&true);
             let forks = uses[index] > 1;
             self.algebra.shares = forks;
             let kept = forks.then(|| self.algebra.next_symbol());
@@ -347,7 +380,7 @@ impl<'a> Lower<'a> {
             let b = &mut self.algebra.b;
             let kept = kept.unwrap_or(Symbol(u32::MAX));
             self.carriers
-                .retire(b, &mut bundle, kept, self.compiler.crossed[index]);
+                .retire(b, &mut bundle, kept, self.compiler.facts.crossed[index]);
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
@@ -363,7 +396,7 @@ impl<'a> Lower<'a> {
     }
 
     fn name(&mut self, node: &Node, bundle: &Bundle) {
-        let name = identifier(&node.name);
+        let name: Arc<str> = identifier(&node.name).into();
         let letters: &[&str] = match (node.ty, bundle.len()) {
             (_, 1) => &[""],
             (Type::Color3 | Type::Color4, _) => &["_r", "_g", "_b", "_a"],
@@ -371,10 +404,15 @@ impl<'a> Lower<'a> {
         };
         let b = &mut self.algebra.b;
         for (signal, letter) in bundle.iter().zip(letters) {
-            b.name(signal.mean, format!("{name}{letter}"));
-            b.name(signal.g[0], format!("{name}{letter}_gx"));
-            b.name(signal.g[1], format!("{name}{letter}_gy"));
-            b.name(signal.private, format!("{name}{letter}_rest"));
+            let parts = [
+                (signal.mean, ""),
+                (signal.g[0], "_gx"),
+                (signal.g[1], "_gy"),
+                (signal.private, "_rest"),
+            ];
+            for (value, part) in parts {
+                b.name(value, Label::of_parts(&name, [letter, part]));
+            }
         }
     }
 

@@ -35,6 +35,7 @@
 //! …: a single number as grey, alpha 1 where there is none. `du` and `dv` are its screen-space
 //! derivatives; parameters and tables are bound as above.
 
+mod apart;
 mod entry;
 mod expression;
 mod function;
@@ -290,7 +291,7 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         }
     }
     let last = module.functions.len() - 1;
-    let signatures = (module.functions.iter().enumerate())
+    let signatures: Vec<Option<Signature>> = (module.functions.iter().enumerate())
         .map(|(index, function)| {
             if index == last {
                 return Some(Signature::of_entry(&names.function));
@@ -316,24 +317,23 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         }
         tables
     });
+    let offsets: Vec<u32> = (tables.iter())
+        .flat_map(|t| t.entries.iter().map(|e| e.1))
+        .collect();
     let mut context = Context {
         module,
-        signatures,
+        signatures: &signatures,
         globals,
-        tables: names.tables.clone(),
-        table_offsets: tables
-            .iter()
-            .flat_map(|t| t.entries.iter().map(|e| e.1))
-            .collect(),
+        tables: &names.tables,
+        table_offsets: &offsets,
         out: String::with_capacity(1024 + 40 * instructions),
     };
     push_structs(&mut context.out, &names, &face, tables.is_some());
-    for index in (0..last).filter(|&index| reached[index]) {
-        let id = FunctionId::from_index(index);
-        if !spelled::push(&mut context, id) {
-            function::write(&mut context, id, None);
-        }
-    }
+    let written: Vec<FunctionId> = (0..last)
+        .filter(|&index| reached[index])
+        .map(FunctionId::from_index)
+        .collect();
+    apart::write(&mut context, &written);
     let text = entry_text(program, &names, &face);
     function::write(&mut context, FunctionId::from_index(last), Some(&text));
 

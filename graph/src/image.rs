@@ -79,6 +79,11 @@ impl Images {
         self.0.insert(name.into(), picture);
     }
 
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The picture that the graph calls `name`.
     pub fn get(&self, name: &str) -> Option<&Arc<Picture>> {
         self.0.get(name)

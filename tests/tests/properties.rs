@@ -12,7 +12,7 @@ use mipless_tests::random::Random;
 use mipless_tests::{METHODS, cases, random_graph};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 fn config(usual: u32) -> ProptestConfig {
     // The same cases in every run; what fails is printed whole.
@@ -205,6 +205,76 @@ proptest! {
         let text = String::from_utf8_lossy(&bytes).into_owned();
         if let Err(mistakes) = load(&text) {
             located(&mistakes, &text);
+        }
+    }
+}
+
+/// Groups of nodes in a chain of mixes, so many that modes are lowered and written on threads; with
+/// regions that are fused into tables, or without.
+fn chain(groups: usize, fused: bool) -> String {
+    let mut nodes = serde_json::Map::new();
+    let mut before = json!(0.3);
+    for i in 0..groups {
+        let noise = json!({ "type": "fractal2d", "inputs": { "frequency": { "input": "scale" }, "seed": i } });
+        let turbulence =
+            json!({ "type": "absval", "inputs": { "in": { "node": format!("noise{i}") } } });
+        let of = if fused { "turbulence" } else { "noise" };
+        let mask = json!({ "type": "smoothstep", "inputs": { "in": { "node": format!("{of}{i}") }, "low": 0.1, "high": 0.3 } });
+        let stripes = json!({ "type": "stripes", "inputs": { "frequency": 3 + i } });
+        let mix = json!({ "type": "mix", "inputs": { "bg": before, "fg": { "node": format!("stripes{i}") }, "mix": { "node": format!("mask{i}") } } });
+        let named = [
+            ("noise", noise),
+            ("turbulence", turbulence),
+            ("mask", mask),
+            ("stripes", stripes),
+            ("mix", mix),
+        ];
+        nodes.extend(named.map(|(name, node)| (format!("{name}{i}"), node)));
+        before = json!({ "node": format!("mix{i}") });
+    }
+    let last = groups - 1;
+    let graph = json!({
+        "version": 1,
+        "name": "chain",
+        "inputs": { "scale": { "type": "float", "value": 4, "min": 0.5, "max": 64 } },
+        "nodes": nodes,
+        "outputs": { "out": before, "edge": { "node": format!("turbulence{last}") } },
+    });
+    graph.to_string()
+}
+
+/// What a process has compiled before, and what it compiles at the same time, does not show.
+#[test]
+fn compilations_beside_each_other_give_the_same_text() {
+    let graphs = [chain(20, false), chain(16, true), chain(2, false)];
+    let text = |json: &String| {
+        let texture = Texture::from_json(json).expect("the graph has no mistakes");
+        let program = texture.compile(&Options::default());
+        assert_eq!(verify(&program.module), Ok(()));
+        emit(&program, &Emission::default()).source
+    };
+    let together: Vec<Vec<String>> = std::thread::scope(|scope| {
+        let (graphs, text) = (&graphs, &text);
+        let run = |turn: usize| {
+            scope.spawn(move || {
+                let mut texts = vec![String::new(); 3];
+                for i in 0..3 {
+                    let place = (turn + i) % 3;
+                    texts[place] = text(&graphs[place]);
+                }
+                texts
+            })
+        };
+        let threads = [0, 1, 2].map(run);
+        threads
+            .map(|thread| thread.join().expect("no panic"))
+            .into()
+    });
+    for (place, graph) in graphs.iter().enumerate() {
+        let after = text(graph);
+        validate(&after).expect("valid WGSL");
+        for texts in &together {
+            assert!(texts[place] == after, "graph {place}");
         }
     }
 }

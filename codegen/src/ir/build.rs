@@ -12,8 +12,8 @@
 
 use super::prune::without_dead_code;
 use super::{
-    Body, Constant, Function, FunctionId, Inst, Library, Module, Numbers, Op, Parameter, Table,
-    Type, Value, op::fold_constants,
+    Body, Constant, Function, FunctionId, Inst, Label, Library, Module, Numbers, Op, Parameter,
+    Table, Type, Value, op::fold_constants,
 };
 use hashbrown::{HashTable, hash_table::Entry};
 use rustc_hash::FxBuildHasher;
@@ -94,7 +94,7 @@ impl Builder {
     }
 
     /// Gives a value a readable name, unless it is a constant or a parameter or has a name.
-    pub fn name(&mut self, value: Value, name: impl Into<String>) {
+    pub fn name(&mut self, value: Value, name: impl Into<Label>) {
         if !matches!(self.function.inst(value), Inst::Const(_) | Inst::Param(_)) {
             self.function
                 .names
@@ -251,7 +251,9 @@ impl Builder {
     /// What a simpler value an op is, if one of the laws applies.
     fn simplified(&mut self, op: Op, [a, b, c]: [Value; 3]) -> Option<Value> {
         let constants = [a, b, c].map(|v| self.function.constant(v));
-        if let Some(result) = self.folded(op, [a, b, c]) {
+        if let [Some(a), Some(b), Some(c)] = constants {
+            // Unused places repeat the first operand.
+            let result = fold_constants(op, [a.bits, b.bits, c.bits]);
             let ty = op.info().result;
             if ty == Type::F32 {
                 let number = f32::from_bits(result);
@@ -340,7 +342,16 @@ impl Builder {
 
     /// The results of a call.
     pub fn call(&mut self, function: &FunctionRef, arguments: &[Value]) -> Vec<Value> {
-        let inst = Inst::Call(function.id, arguments.into());
+        self.call_with(function, arguments.into())
+    }
+
+    /// The same with arguments that need not be copied.
+    pub(super) fn call_with(
+        &mut self,
+        function: &FunctionRef,
+        arguments: Box<[Value]>,
+    ) -> Vec<Value> {
+        let inst = Inst::Call(function.id, arguments);
         self.results_of(inst, &function.results)
     }
 

@@ -3,6 +3,7 @@
 use super::{Constant, FunctionId, Inst, Type, Value};
 use crate::wgsl::Spelled;
 use rustc_hash::FxHashMap;
+use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
 
@@ -13,6 +14,45 @@ pub struct Parameter {
     pub name: String,
     /// The type.
     pub ty: Type,
+}
+
+/// A readable name of a value: a stem, which several values may share, and what follows it.
+#[derive(Clone, Debug)]
+pub struct Label {
+    stem: Arc<str>,
+    rest: [&'static str; 2],
+}
+
+impl Label {
+    /// The name that is these three texts in a row.
+    pub fn of_parts(stem: &Arc<str>, rest: [&'static str; 2]) -> Self {
+        Self {
+            stem: Arc::clone(stem),
+            rest,
+        }
+    }
+}
+
+impl<T: Into<Arc<str>>> From<T> for Label {
+    fn from(name: T) -> Self {
+        Self {
+            stem: name.into(),
+            rest: [""; 2],
+        }
+    }
+}
+
+impl fmt::Display for Label {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.stem)?;
+        self.rest.iter().try_for_each(|part| f.write_str(part))
+    }
+}
+
+impl PartialEq for Label {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_string() == other.to_string()
+    }
 }
 
 /// A pure function over scalars. What it computes is its [`Body`], which is copied when a function
@@ -36,7 +76,7 @@ pub struct Body {
     /// The type of each definition (meaningless for [`Inst::Call`] and [`Inst::Fold`]).
     pub types: Vec<Type>,
     /// Readable names of some values.
-    pub names: FxHashMap<Value, String>,
+    pub names: FxHashMap<Value, Label>,
     /// The named results, in order.
     pub results: Vec<(String, Value)>,
     /// What back ends keep with the body.
@@ -52,6 +92,11 @@ impl Kept {
     /// Of a function that modules share.
     pub(crate) fn shared() -> Self {
         Self(Some(Arc::default()))
+    }
+
+    /// Whether modules share the function.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.0.is_some()
     }
 
     /// The same for a copy that computes the same.

@@ -12,10 +12,12 @@
 
 use super::function::Kept;
 use super::{Builder, Constant, Function, FunctionId, FunctionRef, Module, Type, Value};
-use rustc_hash::FxHashMap;
+use hashbrown::HashTable;
+use rustc_hash::{FxHashMap, FxHasher};
 use smallvec::SmallVec;
 use std::borrow::Cow;
 use std::cell::RefCell;
+use std::hash::{Hash, Hasher};
 use std::rc::Rc;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
@@ -26,6 +28,9 @@ const SHARED: u32 = 1 << 31;
 /// the function, all other values are its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Argument(u8);
+
+/// The most arguments of a shared function.
+const MOST_ARGUMENTS: usize = 128;
 
 impl Argument {
     const ZERO: Self = Self(4);
@@ -50,12 +55,45 @@ impl Argument {
 }
 
 /// What tells shared functions apart.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 struct Key {
     name: Cow<'static, str>,
     variant: u32,
     literals: SmallVec<[u32; 6]>,
-    arguments: SmallVec<[Argument; 32]>,
+    arguments: Vec<Argument>,
+}
+
+impl Key {
+    /// Whether it is the key of these parts.
+    fn is(&self, name: &str, variant: u32, literals: &[u32], arguments: &[Argument]) -> bool {
+        self.variant == variant
+            && self.arguments == arguments
+            && self.name == name
+            && self.literals[..] == *literals
+    }
+
+    /// A hash of the parts of a key.
+    fn hash_of(name: &str, variant: u32, literals: &[u32], arguments: &[Argument]) -> u64 {
+        let mut hasher = FxHasher::default();
+        hasher.write(name.as_bytes());
+        hasher.write_u32(variant);
+        literals.iter().for_each(|&word| hasher.write_u32(word));
+        for eight in arguments.chunks(8) {
+            let pack = |word: u64, argument: &Argument| word << 8 | u64::from(argument.0);
+            hasher.write_u64(eight.iter().fold(1, pack));
+        }
+        hasher.finish()
+    }
+
+    fn hash(&self) -> u64 {
+        Self::hash_of(&self.name, self.variant, &self.literals, &self.arguments)
+    }
+}
+
+impl Hash for Key {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        state.write_u64(Self::hash(self));
+    }
 }
 
 /// Where a result of a shared function is found.
@@ -105,18 +143,35 @@ fn rule(key: Key, build: impl FnOnce(Key) -> Rule) -> Arc<Rule> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Library(Rc<RefCell<Shelves>>);
 
+/// What a library holds.
 #[derive(Debug, Default)]
-struct Shelves {
-    known: FxHashMap<Key, (Arc<Rule>, Option<FunctionRef>)>,
+pub(crate) struct Shelves {
+    known: HashTable<Placed>,
     /// The functions that were called, callees first.
     rules: Vec<Arc<Rule>>,
 }
 
+/// A rule, and its function as one of the module.
+#[derive(Clone, Debug)]
+struct Placed {
+    hash: u64,
+    rule: Arc<Rule>,
+    function: Option<FunctionRef>,
+}
+
 impl Shelves {
+    /// Where the rule of this key is, if it is known.
+    fn find(&self, key: &Key) -> Option<&Placed> {
+        let hash = Key::hash(key);
+        (self.known).find(hash, |placed| {
+            placed.hash == hash && placed.rule.key == *key
+        })
+    }
+
     /// The rule's function as one of this module.
     fn reference(&mut self, rule: &Arc<Rule>) -> Option<FunctionRef> {
-        if let Some((_, reference)) = self.known.get(&rule.key) {
-            return reference.clone();
+        if let Some(placed) = self.find(&rule.key) {
+            return placed.function.clone();
         }
         for callee in &rule.callees {
             self.reference(callee);
@@ -128,8 +183,13 @@ impl Shelves {
                 results: Arc::clone(&rule.types),
             }
         });
-        let entry = (Arc::clone(rule), reference.clone());
-        self.known.insert(rule.key.clone(), entry);
+        let hash = Key::hash(&rule.key);
+        let placed = Placed {
+            hash,
+            rule: Arc::clone(rule),
+            function: reference.clone(),
+        };
+        (self.known).insert_unique(hash, placed, |placed| placed.hash);
         reference
     }
 }
@@ -177,32 +237,44 @@ impl Builder {
         arguments: &[(&'static str, Value)],
         build: impl FnOnce(&mut Self, &[Value]) -> Vec<(&'static str, Value)>,
     ) -> SmallVec<[Value; 16]> {
-        let key = Key {
-            name,
-            variant,
-            literals: literals.into(),
-            arguments: arguments
-                .iter()
-                .map(|&(_, v)| Argument::of(self, v))
-                .collect(),
-        };
+        let mut pattern = [Argument(0); MOST_ARGUMENTS];
+        let pattern = &mut pattern[..arguments.len()];
+        for (argument, &(_, value)) in pattern.iter_mut().zip(arguments) {
+            *argument = Argument::of(self, value);
+        }
+        let hash = Key::hash_of(&name, variant, literals, pattern);
         let library = self
             .library
             .as_ref()
             .expect("the caller has seen a library");
-        let known = library.0.borrow().known.get(&key).cloned();
-        let (rule, function) = known.unwrap_or_else(|| {
+        let is_it = |placed: &Placed| {
+            placed.hash == hash && placed.rule.key.is(&name, variant, literals, pattern)
+        };
+        let known = library.0.borrow().known.find(hash, is_it).cloned();
+        let Placed { rule, function, .. } = known.unwrap_or_else(|| {
+            let key = Key {
+                name,
+                variant,
+                literals: literals.into(),
+                arguments: pattern.to_vec(),
+            };
             let rule = rule(key, |key| Rule::new(key, (readable, doc), arguments, build));
-            let reference = library.0.borrow_mut().reference(&rule);
-            (rule, reference)
+            let function = library.0.borrow_mut().reference(&rule);
+            Placed {
+                hash,
+                rule,
+                function,
+            }
         });
         let results = match &function {
             Some(function) => {
-                let inputs: SmallVec<[Value; 32]> = (arguments.iter().zip(&rule.key.arguments))
-                    .filter(|(_, argument)| argument.passed().is_some())
-                    .map(|(&(_, v), _)| v)
-                    .collect();
-                self.call(function, &inputs)
+                let mut inputs = Vec::with_capacity(arguments.len());
+                for (&(_, value), argument) in arguments.iter().zip(&rule.key.arguments) {
+                    if argument.passed().is_some() {
+                        inputs.push(value);
+                    }
+                }
+                self.call_with(function, inputs.into_boxed_slice())
             }
             None => Vec::new(),
         };
@@ -294,6 +366,17 @@ impl Rule {
     }
 }
 
+/// Where the functions of another library went.
+#[derive(Debug)]
+pub(crate) struct Adopted(Vec<FunctionId>);
+
+impl Adopted {
+    /// Where a function went; `None` if it is not one of a library.
+    pub(crate) fn get(&self, id: FunctionId) -> Option<FunctionId> {
+        (id.0 & SHARED != 0).then(|| self.0[(id.0 & !SHARED) as usize])
+    }
+}
+
 impl Library {
     /// A function that all functions of the module share, by a key that names all that it depends
     /// on. `build` puts it into a module of its own, with what it calls.
@@ -306,11 +389,10 @@ impl Library {
             name: Cow::Owned(key.to_owned()),
             variant,
             literals: SmallVec::new(),
-            arguments: SmallVec::new(),
+            arguments: Vec::new(),
         };
-        let known = self.0.borrow().known.get(&key(0)).cloned();
-        if let Some((_, reference)) = known {
-            return reference.expect("a function has results");
+        if let Some(placed) = self.0.borrow().find(&key(0)) {
+            return placed.function.clone().expect("a function has results");
         }
         let rule = rule(key(0), |whole| {
             let mut module = Module::default();
@@ -331,13 +413,30 @@ impl Library {
         reference.expect("a function has results")
     }
 
+    /// What it holds, for another thread.
+    pub(crate) fn into_shelves(self) -> Shelves {
+        std::mem::take(&mut *self.0.borrow_mut())
+    }
+
+    /// The functions of another library as functions of this one.
+    pub(crate) fn adopt(&self, other: &Shelves) -> Adopted {
+        let mut shelves = self.0.borrow_mut();
+        let place = |rule| {
+            shelves
+                .reference(rule)
+                .expect("only functions are listed")
+                .id
+        };
+        Adopted(other.rules.iter().map(place).collect())
+    }
+
     /// Puts the library's functions before those of `module`, which call them.
     pub(crate) fn link(self, module: &mut Module) {
         let shelves = std::mem::take(&mut *self.0.borrow_mut());
         let offset = shelves.rules.len() as u32;
-        let place = |rule: &Rule| match &shelves.known[&rule.key] {
-            (_, Some(reference)) => FunctionId(reference.id.0 & !SHARED),
-            (_, None) => unreachable!("a callee is a function"),
+        let place = |rule: &Rule| {
+            let placed = shelves.find(&rule.key).and_then(|p| p.function.as_ref());
+            FunctionId(placed.expect("a callee is a function").id.0 & !SHARED)
         };
         let own = std::mem::take(&mut module.functions);
         for rule in &shelves.rules {

@@ -18,35 +18,46 @@ pub(super) fn without_dead_code(function: Body) -> Body {
     if live.iter().all(|&l| l) {
         return function;
     }
-    let count = live.iter().filter(|&&l| l).count();
     let mut moved = vec![Value(0); live.len()];
-    let (mut insts, mut types) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    for (index, mut inst) in function.insts.into_iter().enumerate() {
+    let Body {
+        mut insts,
+        mut types,
+        names,
+        results,
+        ..
+    } = function;
+    let mut next = 0;
+    for index in 0..insts.len() {
         if live[index] {
-            renumber(&mut inst, |v| moved[v.index()]);
-            moved[index] = Value(insts.len() as u32);
-            insts.push(inst);
-            types.push(function.types[index]);
+            renumber(&mut insts[index], |v| moved[v.index()]);
+            moved[index] = Value(next as u32);
+            insts.swap(next, index);
+            types[next] = types[index];
+            next += 1;
         }
     }
+    insts.truncate(next);
+    types.truncate(next);
     Body {
+        doc: function.doc,
+        params: function.params,
         insts,
         types,
-        names: (function.names.into_iter())
+        names: (names.into_iter())
             .filter(|(v, _)| live[v.index()])
             .map(|(v, name)| (moved[v.index()], name))
             .collect(),
-        results: (function.results.into_iter())
+        results: (results.into_iter())
             .map(|(n, v)| (n, moved[v.index()]))
             .collect(),
-        ..function
+        kept: function.kept,
     }
 }
 
 impl Function {
     /// Makes every call one of the function that `to` gives for its callee. A body that stays as it
     /// is stays shared.
-    pub(super) fn redirect(&mut self, to: impl Fn(FunctionId) -> FunctionId) {
+    pub(crate) fn redirect(&mut self, to: impl Fn(FunctionId) -> FunctionId) {
         let callee = |inst: &Inst| match inst {
             Inst::Call(f, _) | Inst::Fold { function: f, .. } => Some(*f),
             _ => None,

@@ -117,8 +117,8 @@ impl Module {
         for (index, (inst, ty)) in function.insts.iter().zip(&function.types).enumerate() {
             let value = Value::from_index(index);
             write!(f, "  {value}")?;
-            if let Some(name) = function.names.get(&value) {
-                write!(f, " {}", Name(name))?;
+            if let Some(name) = function.names.get(&value).map(|name| name.to_string()) {
+                write!(f, " {}", Name(&name))?;
             }
             write!(f, ": {} = ", ty.name())?;
             self.print_inst(inst, f)?;
@@ -130,7 +130,7 @@ impl Module {
                 f,
                 "{} {} = {value}",
                 if index == 0 { "" } else { "," },
-                Name(name)
+                Name(&name)
             )?;
         }
         f.write_str("\n}\n")

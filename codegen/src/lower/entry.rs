@@ -1,7 +1,7 @@
 //! Entries: each method is a way to make an entry from functions of the graph.
 
 use super::symbols::reads_position;
-use super::{Arguments, Compiler, Lower, Method, sampling};
+use super::{Arguments, Compiler, Lower, Method, ahead, sampling};
 use crate::ir::{Builder, FOOTPRINT, FunctionRef, Module, Type as Scalar, Value};
 use crate::moments::Mode;
 use mipless_graph::Graph;
@@ -195,24 +195,17 @@ pub(super) fn finite(b: &mut Builder, graph: &Graph, arguments: &Arguments) -> V
 /// `quad` where a source's footprint lies between 0.02 and 0.6 wavelengths and something that is
 /// not linear follows, else `local`: a branch between two functions.
 fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
-    let (local, nonlinear) = graph_function(compiler, module, Mode::Local, "local");
-    let band = nonlinear.then(|| {
-        footprint_function(compiler, module, "bends", |b, footprints| {
-            let (low, high) = (b.f32(0.02), b.f32(0.6));
-            let mut any = b.bool(false);
-            for &footprint in footprints {
-                let above = b.lt(low, footprint);
-                let below = b.lt(footprint, high);
-                let within = b.and(above, below);
-                any = b.or(any, within);
-            }
-            any
-        })
+    let other = (Mode::Quad, "quad");
+    let ((local, band), ahead) = ahead::both(compiler, module, other, |module| {
+        let (local, nonlinear) = graph_function(compiler, module, Mode::Local, "local");
+        let band = nonlinear.then(|| footprint_function(compiler, module, "bends", within_band));
+        (local, band.flatten())
     });
-    let Some(Some(band)) = band else {
+    let Some(band) = band else {
         return entry_over(compiler, module, name, |_| local);
     };
-    let (quad, _) = graph_function(compiler, module, Mode::Quad, "quad");
+    let quad = (ahead.and_then(|ahead| ahead.join(compiler, module)))
+        .unwrap_or_else(|| graph_function(compiler, module, other.0, other.1).0);
     let mut branches = Vec::new();
     for (function, suffix) in [(&local, "by_local"), (&quad, "by_quad")] {
         branches.push(branch(compiler, module, function, suffix));
@@ -229,6 +222,22 @@ fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
         state = b.fold(branch, count, &state, &arguments);
     }
     finish(module, b, &local, &state);
+}
+
+/// Whether a footprint lies where `quad` pays.
+fn within_band(b: &mut Builder, footprints: &[Value]) -> Value {
+    let (low, high) = (b.f32(0.02), b.f32(0.6));
+    let within = |b: &mut Builder, &footprint: &Value| {
+        let above = b.lt(low, footprint);
+        let below = b.lt(footprint, high);
+        b.and(above, below)
+    };
+    let mut any = within(b, &footprints[0]);
+    for footprint in &footprints[1..] {
+        let within = within(b, footprint);
+        any = b.or(any, within);
+    }
+    any
 }
 
 /// A function as the body of a fold of 0 or 1 turns: the state is replaced by its results.

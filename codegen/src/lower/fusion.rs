@@ -65,22 +65,8 @@ impl<'a> Compiler<'a> {
         'a: 'b,
     {
         Compiler {
-            graph: self.graph,
-            catalogue: self.catalogue,
-            options,
-            live: self.live.clone(),
-            order: self.order.clone(),
-            crossed: self.crossed.clone(),
-            literal: self.literal.clone(),
-            functions: Default::default(),
-            tables: Default::default(),
-            made: Default::default(),
-            tabulated: Default::default(),
-            fused: Default::default(),
-            maps: Default::default(),
-            gains: Default::default(),
-            levels: Default::default(),
             library: self.library.clone(),
+            ..Compiler::new((self.graph, self.facts), self.catalogue, options)
         }
     }
 }
@@ -201,7 +187,7 @@ impl Lower<'_> {
         let certain = |signal: &Signal| signal.is_certain(&self.algebra.b);
         Some(if bundle.iter().all(certain) {
             Known::Certain {
-                literal: self.compiler.literal[id.index()],
+                literal: self.compiler.facts.literal[id.index()],
             }
         } else if let [signal] = &bundle[..] {
             Known::Function(Chain {

@@ -191,6 +191,11 @@ impl Lower<'_> {
         self.measures
     }
 
+    /// Whether nothing else is asked of the node at work: its output is not read.
+    pub fn only_measures(&self) -> bool {
+        self.is_only_measured
+    }
+
     /// Reports the footprint of a source, in wavelengths of its dominant detail: `auto` and `split`
     /// decide by it.
     pub fn source_footprint(&mut self, wavelengths: Value) {

@@ -11,13 +11,12 @@
 //! conditional taps of T₂(T₁(X) + Y): the taps are in the map.
 
 use super::fusion::{Known, region};
+use super::shape::{self, Shape, measured};
 use super::{Arguments, Bundle, Compiler, Lower};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
 use mipless_graph::{Node, NodeId, Source};
-use rustc_hash::{FxHashMap, FxHasher};
-use std::hash::{Hash, Hasher};
 use std::rc::Rc;
 use std::sync::{Arc, LazyLock};
 
@@ -25,8 +24,6 @@ use std::sync::{Arc, LazyLock};
 const LONGEST: u32 = 12;
 /// How far, relative to the region's values, the closed form may be off.
 pub(super) const TOLERANCE: f32 = 0.02;
-/// How many shapes of regions of one graph are measured: a graph of 10,000 nodes stays quick.
-pub(super) const MEASURED: usize = 48;
 /// A range is this many standard deviations of a noise.
 pub(super) const DEVIATIONS: f32 = 10.0;
 
@@ -118,12 +115,8 @@ impl Lower<'_> {
         }
         let compiler = self.compiler;
         let shape = shape(compiler, index, &before);
-        let known = compiler.gains.borrow().get(&shape).copied();
-        let gains = known.unwrap_or_else(|| {
-            let measured = compiler.gains.borrow().len() < MEASURED;
-            let gains = usize::from(measured && gains(compiler, index, &before));
-            compiler.gains.borrow_mut().insert(shape, gains);
-            gains
+        let gains = measured(compiler, shape, || {
+            usize::from(gains(compiler, index, &before))
         });
         if gains == 0 {
             return None;
@@ -357,9 +350,8 @@ fn point_function(
     })
 }
 
-/// A hash of all that the region's function and its entries depend on: regions of one shape are
-/// measured once.
-fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
+/// All that the region's function and its entries depend on.
+fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> Option<Shape> {
     let From::Node(first) = pair.first.from else {
         panic!("a pair begins with a node")
     };
@@ -373,43 +365,13 @@ fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> u64 {
     };
     let entries = [first, second];
     nodes.extend(region(compiler, index, &entries));
-    let mut hasher = hashed(compiler, &entries, &nodes);
+    let mut words = shape::shape(compiler, &entries, &nodes)?;
     for entry in [&pair.first, &pair.second] {
-        for number in [
-            entry.signal.range[0],
-            entry.signal.range[1],
-            entry.deviation,
-        ] {
-            number.to_bits().hash(&mut hasher);
-        }
+        let [low, high] = entry.signal.range;
+        words.extend([low, high, entry.deviation].map(f32::to_bits));
     }
-    matches!(pair.second.from, From::Node(_)).hash(&mut hasher);
-    hasher.finish()
-}
-
-/// A hash of the nodes of a region with what they read; entries count by their places.
-pub(super) fn hashed(compiler: &Compiler<'_>, entries: &[NodeId], nodes: &[usize]) -> FxHasher {
-    let mut hasher = FxHasher::default();
-    let mut places: FxHashMap<usize, usize> = FxHashMap::default();
-    for (place, entry) in entries.iter().enumerate() {
-        places.insert(entry.index(), place);
-    }
-    nodes.len().hash(&mut hasher);
-    for &index in nodes {
-        let node = &compiler.graph.nodes[index];
-        node.definition.hash(&mut hasher);
-        node.ty.hash(&mut hasher);
-        for input in &node.inputs {
-            input.ty.hash(&mut hasher);
-            match &input.source {
-                Source::Node(id) => places.get(&id.index()).hash(&mut hasher),
-                other => format!("{other:?}").hash(&mut hasher),
-            }
-        }
-        let place = places.len();
-        places.insert(index, place);
-    }
-    hasher
+    words.push(u32::from(matches!(pair.second.from, From::Node(_))));
+    Some(words)
 }
 
 /// Whether the closed form of the region is off by more than [`TOLERANCE`] under one of a few

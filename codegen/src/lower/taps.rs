@@ -8,13 +8,13 @@
 //! most where a region has jumps (MATH §7: 7 uniform taps with the cell's variance added).
 
 use super::fusion::{Chain, region};
-use super::pair::{DEVIATIONS, MEASURED, TOLERANCE, hashed};
+use super::pair::{DEVIATIONS, TOLERANCE};
+use super::shape::{measured, shape};
 use super::{Arguments, Bundle, Compiler, Lower, Varying};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Mode, SIDES, Signal, Tapped};
 use mipless_graph::{Behaviour, NodeId, Type};
-use std::hash::{Hash, Hasher};
 
 /// How much wider, relative to the signal at the parameters' defaults, the entry of a table may be:
 /// its finest σ is a part of the domain.
@@ -60,20 +60,11 @@ impl Lower<'_> {
             return None;
         }
         let nodes = region(compiler, index, &[chain.entry]);
-        let mut hasher = hashed(compiler, &[chain.entry], &nodes);
-        (scales.iter().flatten()).for_each(|x| x.to_bits().hash(&mut hasher));
-        let shape = hasher.finish();
-        let known = compiler.gains.borrow().get(&shape).copied();
-        let side = known.unwrap_or_else(|| {
-            let measured = compiler.gains.borrow().len() < MEASURED;
-            let side = if measured {
-                side(compiler, index, chain, &scales)
-            } else {
-                0
-            };
-            compiler.gains.borrow_mut().insert(shape, side);
-            side
+        let shape = shape(compiler, &[chain.entry], &nodes).map(|mut words| {
+            words.extend(scales.iter().flatten().map(|x| x.to_bits()));
+            words
         });
+        let side = measured(compiler, shape, || side(compiler, index, chain, &scales));
         if side == 0 {
             return None;
         }

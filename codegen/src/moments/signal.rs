@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 pub struct Symbol(pub u32);
 
 /// A scalar signal: see the module documentation. Coefficients that are absent are the constant 0.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Signal {
     /// The mean; where `cell` is present, the mean is `cell + mean` and `mean` lies in [0, 1).
     pub mean: Value,
@@ -30,6 +30,16 @@ pub struct Signal {
     pub binary: Option<[Value; 2]>,
     /// The symbol of this signal's second Hermite polynomial, where several transfers read it.
     pub hermite: Option<Symbol>,
+}
+
+impl Clone for Signal {
+    fn clone(&self) -> Self {
+        Self {
+            // Copied as a whole: one by one takes as long as all the rest.
+            shared: SmallVec::from_slice(&self.shared),
+            ..*self
+        }
+    }
 }
 
 /// The covariance of two signals, split by what carries it.

@@ -66,18 +66,18 @@ impl Signature {
 }
 
 /// What all functions of a shader share.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Context<'a> {
     /// The functions and tables.
     pub(super) module: &'a Module,
     /// One for each function that is reached; by position in the module.
-    pub(super) signatures: Vec<Option<Signature>>,
+    pub(super) signatures: &'a [Option<Signature>],
     /// Every name at module scope.
     pub(super) globals: Scope,
     /// The name of the array of tables.
-    pub(super) tables: String,
+    pub(super) tables: &'a str,
     /// Where each table starts in it.
-    pub(super) table_offsets: Vec<u32>,
+    pub(super) table_offsets: &'a [u32],
     /// The text so far.
     pub(super) out: String,
 }
@@ -121,6 +121,8 @@ struct Writer<'c, 'a> {
     generated: u32,
     /// The WGSL names of the parts and of the structs of their arguments and results.
     part_signatures: Vec<Signature>,
+    /// The names at module scope that the parts take.
+    taken: Vec<String>,
     /// A constant that is spelled as a variable: see [`Writer::hide_constant`].
     hidden: Option<(Value, u32)>,
 }
@@ -132,6 +134,8 @@ pub(super) struct Written {
     pub(super) locals: Vec<String>,
     /// How many parts it has.
     pub(super) parts: usize,
+    /// What its parts and their structs are called.
+    pub(super) taken: Vec<String>,
 }
 
 /// Appends function `id` with its structs and parts.
@@ -158,6 +162,7 @@ pub(super) fn write(
         scope,
         generated: 0,
         part_signatures: Vec::new(),
+        taken: Vec::new(),
         hidden: None,
     };
     let params = writer.name_parameters();
@@ -165,6 +170,7 @@ pub(super) fn write(
     Written {
         locals: writer.strings,
         parts: writer.part_signatures.len(),
+        taken: writer.taken,
     }
 }
 
@@ -290,24 +296,14 @@ impl<'a> Writer<'_, 'a> {
         let whole = self.signature(id);
         let base = whole.name.clone();
         let camel = format!("{}Part{}", whole.camel, number + 1);
-        let name = self
-            .context
-            .globals
-            .take(format!("{base}_part_{}", number + 1));
-        let packed = (part.inputs.len() > PARAMETERS)
-            .then(|| self.context.globals.take(format!("{camel}Args")));
-        let results = (part.outputs.len() > 1).then(|| self.context.globals.take(camel));
-        let typed = |writer: &mut Self, values: &[Value]| -> Vec<(String, Type)> {
-            (values.iter())
-                .map(|&v| (writer.name_text(v), writer.function.ty(v)))
-                .collect()
-        };
-        let (inputs, outputs) = (typed(self, &part.inputs), typed(self, &part.outputs));
+        let name = self.take(format!("{base}_part_{}", number + 1));
+        let packed = (part.inputs.len() > PARAMETERS).then(|| self.take(format!("{camel}Args")));
+        let results = (part.outputs.len() > 1).then(|| self.take(camel));
         if let Some(packed) = &packed {
-            self.push_struct(packed, &inputs);
+            self.push_values_struct(packed, &part.inputs);
         }
         if let Some(results) = &results {
-            self.push_struct(results, &outputs);
+            self.push_values_struct(results, &part.outputs);
         }
         self.push_doc(&format!("Part {} of {total} of {base}.", number + 1));
         self.push("fn ");
@@ -317,15 +313,16 @@ impl<'a> Writer<'_, 'a> {
             self.push("args: ");
             self.push(packed);
         } else {
-            for (index, (input, ty)) in inputs.iter().enumerate() {
+            for (index, &input) in part.inputs.iter().enumerate() {
                 self.push(if index == 0 { "" } else { ", " });
-                self.push(input);
+                self.local_name(input);
                 self.push(": ");
-                self.push(ty.name());
+                self.push(self.function.ty(input).name());
             }
         }
         self.push(") -> ");
-        self.push(results.as_deref().unwrap_or(outputs[0].1.name()));
+        let only = self.function.ty(part.outputs[0]);
+        self.push(results.as_deref().unwrap_or(only.name()));
         self.push(" {\n");
         let place = if packed.is_some() { PACKED } else { BARE };
         part.inputs
@@ -355,6 +352,13 @@ impl<'a> Writer<'_, 'a> {
             fields: Vec::new(),
             camel: String::new(),
         });
+    }
+
+    /// A name at module scope.
+    fn take(&mut self, name: String) -> String {
+        let name = self.context.globals.take(name);
+        self.taken.push(name.clone());
+        name
     }
 
     fn item(&mut self, item: Item, parts: &[Part]) {
@@ -408,6 +412,21 @@ impl<'a> Writer<'_, 'a> {
 
     fn push_doc(&mut self, doc: &str) {
         push_doc(&mut self.context.out, doc);
+    }
+
+    /// A struct of values under their local names.
+    fn push_values_struct(&mut self, name: &str, values: &[Value]) {
+        self.push("struct ");
+        self.push(name);
+        self.push(" {\n");
+        for &value in values {
+            self.push("    ");
+            self.local_name(value);
+            self.push(": ");
+            self.push(self.function.ty(value).name());
+            self.push(",\n");
+        }
+        self.push("}\n\n");
     }
 
     fn push_struct(&mut self, name: &str, fields: &[(String, Type)]) {

@@ -8,7 +8,10 @@ use rustc_hash::FxHashMap;
 pub fn identifier(text: &str) -> String {
     let mut name = String::with_capacity(text.len() + 1);
     let mut gap = false;
-    for c in text.chars() {
+    if is_identifier(text) {
+        name.push_str(text);
+    }
+    for c in text[name.len()..].chars() {
         if c.is_ascii_alphanumeric() {
             if gap && !name.is_empty() {
                 name.push('_');
@@ -29,6 +32,22 @@ pub fn identifier(text: &str) -> String {
         name.push_str("_value");
     }
     name
+}
+
+/// Whether text is an identifier already, unless it is a reserved word.
+fn is_identifier(text: &str) -> bool {
+    let mut before = b'_';
+    for byte in text.bytes() {
+        let fits = match byte {
+            b'_' => before != b'_',
+            _ => byte.is_ascii_alphanumeric(),
+        };
+        if !fits {
+            return false;
+        }
+        before = byte;
+    }
+    before != b'_' && !text.starts_with(|c: char| c.is_ascii_digit())
 }
 
 /// The name of a type: the words of an identifier, capitalised and joined.

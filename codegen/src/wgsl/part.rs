@@ -7,8 +7,8 @@
 
 use crate::ir::Value;
 
-/// The weight up to which statements share a part.
-const PART: u32 = 100;
+/// The weight from which on statements may make a part of their own, and up to which they do.
+const PART: [u32; 2] = [60, 140];
 /// The weight up to which a function is not split.
 const WHOLE: u32 = 180;
 
@@ -69,6 +69,55 @@ impl Level {
     }
 }
 
+impl Level {
+    /// How many values of the level live across the place after each line.
+    fn crossing(&self, home: &[u32], results: &[Value]) -> Vec<u32> {
+        let count = self.items.len();
+        // Each value is there from the line that defines it to the last one that reads it.
+        let mut last = vec![0; home.len()];
+        for line in 0..count {
+            for &v in self.inputs(line) {
+                last[v.index()] = line;
+            }
+        }
+        for &v in results {
+            last[v.index()] = count;
+        }
+        let mut changes = vec![0_i32; count + 1];
+        for (&line, last) in home.iter().zip(last) {
+            if line != OUTSIDE && (line as usize) < last {
+                changes[line as usize] += 1;
+                changes[last] -= 1;
+            }
+        }
+        let mut alive = 0;
+        let sum = |change: i32| {
+            alive += change;
+            alive as u32
+        };
+        changes.into_iter().map(sum).collect()
+    }
+
+    /// Where the part that begins at a line ends: where the fewest values cross, as late as that.
+    fn cut(&self, start: usize, crossing: &[u32]) -> usize {
+        let count = self.items.len();
+        let mut weight = 0;
+        let mut best: Option<usize> = None;
+        for end in start + 1..=count {
+            weight += self.weights[end - 1];
+            if weight > PART[1] {
+                break;
+            }
+            let is_fewer = best.is_none_or(|best| crossing[end - 1] <= crossing[best - 1]);
+            if end == count || (weight >= PART[0] && is_fewer) {
+                best = Some(end);
+            }
+        }
+        // A part of one line would never get the level shorter.
+        best.unwrap_or(start).max(start + 2).min(count)
+    }
+}
+
 /// No line: the value comes from outside the function.
 const OUTSIDE: u32 = u32::MAX;
 
@@ -116,22 +165,18 @@ pub(super) fn split(
     for depth in 0.. {
         let first = parts.len() as u32;
         let mut group_of = Vec::with_capacity(level.items.len());
-        let mut weight = PART;
-        for (&item, &more) in level.items.iter().zip(&level.weights) {
-            // A part of one line would never get the level shorter.
-            let alone = parts.last().is_some_and(|p| p.items.len() < 2);
-            if weight + more > PART && !(alone && parts.len() as u32 > first) {
-                parts.push(Part {
-                    items: Vec::new(),
-                    inputs: Vec::new(),
-                    outputs: Vec::new(),
-                });
-                weight = 0;
-            }
-            weight += more;
-            let group = parts.len() - 1;
-            parts[group].items.push(item);
-            group_of.push(group as u32);
+        let crossing = level.crossing(&home, results);
+        let mut start = 0;
+        while start < level.items.len() {
+            let end = level.cut(start, &crossing);
+            let group = parts.len() as u32;
+            parts.push(Part {
+                items: level.items[start..end].to_vec(),
+                inputs: Vec::new(),
+                outputs: Vec::new(),
+            });
+            group_of.resize(end, group);
+            start = end;
         }
         let group_home = |v: Value, home: &[u32]| match home[v.index()] {
             OUTSIDE => OUTSIDE,

@@ -51,10 +51,10 @@ fn spell(module: &Module, id: FunctionId, callees: &[FunctionId]) -> Spelled {
     }
     let mut context = Context {
         module,
-        signatures,
+        signatures: &signatures,
         globals: Scope::default(),
-        tables: String::new(),
-        table_offsets: Vec::new(),
+        tables: "",
+        table_offsets: &[],
         out: String::new(),
     };
     let written = function::write(&mut context, id, None);

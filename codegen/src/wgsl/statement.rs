@@ -96,6 +96,10 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
         }
     }
 
+    let mut named = vec![false; size];
+    for value in function.names.keys() {
+        named[value.index()] = true;
+    }
     let mut inlined = vec![false; size];
     let mut length = vec![NAME; size];
     for index in 0..size {
@@ -133,22 +137,29 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
                 let inline = is_single(module, call)
                     && matches!(call, Inst::Call(..))
                     && readers[index] == 1
-                    && !function.names.contains_key(&value);
+                    && !named[index];
                 inlined[index] = inline;
                 continue;
             }
         };
         let mut total = own;
+        let mut count = 0;
         reads(function, value, |v| {
             if inlined[v.index()] && index - v.index() > FARTHEST {
                 inlined[v.index()] = false;
             }
+            count += 1;
             total += if inlined[v.index()] {
                 length[v.index()]
             } else {
                 NAME
             };
         });
+        // So many names alone are too long.
+        if own + NAME * count > LONGEST {
+            reads(function, value, |v| inlined[v.index()] = false);
+            total = own + NAME * count;
+        }
         while total > LONGEST {
             let mut longest = None;
             reads(function, value, |v| {
@@ -162,7 +173,7 @@ pub(super) fn choose(module: &Module, function: &Function) -> Statements {
             total = total - length[longest] + NAME;
         }
         length[index] = total;
-        inlined[index] = may_inline && readers[index] == 1 && !function.names.contains_key(&value);
+        inlined[index] = may_inline && readers[index] == 1 && !named[index];
     }
     for &(_, value) in &function.results {
         if size - value.index() > FARTHEST {

@@ -158,6 +158,9 @@ pub(crate) fn octaves_of(
 ) -> Vec<Signal> {
     let position = position(lower, node);
     kernel.report(lower, &position);
+    if lower.only_measures() {
+        return vec![Signal::constant(lower.b(), 0.0)];
+    }
     let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
     let b = lower.b();
     if !(amplitude.is_certain(b) && pivot.is_certain(b)) {

@@ -293,7 +293,7 @@ impl Reader {
             return Err(format!("%{} is expected here", function.insts.len()));
         }
         if !cursor.take(":") {
-            function.names.insert(value, cursor.name()?);
+            function.names.insert(value, cursor.name()?.into());
             cursor.expect(":")?;
         }
         let ty = cursor.ty()?;

@@ -186,7 +186,7 @@ impl Writer<'_, '_> {
     fn load(&mut self, table: u32, index: Value) {
         let offset = self.context.table_offsets[table as usize];
         let last = self.context.module.tables[table as usize].data.len() as u32 - 1;
-        self.context.out.push_str(&self.context.tables);
+        self.context.out.push_str(self.context.tables);
         self.push("[");
         if let Some(index) = self.function.constant(index) {
             push_number(&mut self.context.out, offset + index.bits.min(last));

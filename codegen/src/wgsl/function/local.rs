@@ -101,17 +101,11 @@ impl Writer<'_, '_> {
         }
     }
 
-    pub(super) fn name_text(&mut self, value: Value) -> String {
-        let start = self.context.out.len();
-        self.local_name(value);
-        self.context.out.split_off(start)
-    }
-
     fn make_name(&mut self, value: Value) -> u32 {
         let function = self.function;
         let text =
             if let Some(name) = function.names.get(&value) {
-                Some(name.clone())
+                Some(name.to_string())
             } else {
                 let (call, of_call) = match function.inst(value) {
                     Inst::Result(of, _) if is_single(self.context.module, function.inst(*of)) => {
@@ -163,6 +157,7 @@ impl Writer<'_, '_> {
             })
             .find_map(|(index, position)| {
                 let name = self.function.names.get(&Value::from_index(index))?;
+                let name = name.to_string();
                 let stem = name.strip_suffix(fields[position as usize].0.as_str())?;
                 let stem = stem.strip_suffix('_')?;
                 (!stem.is_empty()).then(|| stem.to_owned())
