@@ -33,7 +33,7 @@ static SPEC: NodeSpec = NodeSpec {
     output: OutputType::Exactly(Type::Float),
     class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "granite",
-        "nodes": { "fractal3d": { "type": "fractal3d", "inputs": { "frequency": 4, "octaves": 4, "pivot": 0.5 } } },
+        "nodes": { "fractal3d": { "type": "fractal3d", "inputs": { "frequency": 4, "octaves": 4, "pivot": 0.5, "kernel": "quintic", "period": 4 } } },
         "outputs": { "out": { "node": "fractal3d" } } }"#,
 };
 
