@@ -28,7 +28,7 @@ pub use upstream::{Over, Upstream, Widened};
 use crate::ir::{Builder, FunctionRef, Interface, Label, Library, Module, Port, Program, Value};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use arguments::Arguments;
-use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Source, Type};
+use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Picture, Source, Type};
 use rustc_hash::FxHashMap;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -149,6 +149,10 @@ impl InputView for Varying {
 
     fn stops(&self, _: &str) -> Vec<[f32; 2]> {
         vec![[1.0, 1.0]]
+    }
+
+    fn picture(&self, _: &str) -> Option<&Picture> {
+        None
     }
 }
 

@@ -20,11 +20,13 @@ mod report;
 mod sources;
 
 use crate::{
-    Behaviour, Diagnostic, Graph, Input, InputView, Literal, Node, NodeId, PortType, Source, Type,
+    Behaviour, Diagnostic, Graph, Input, InputView, Literal, Node, NodeId, Picture, PortType,
+    Source, Type,
 };
 pub use class::Class;
 use class::{Incoming, Reason};
 pub use sources::Sources;
+use std::sync::Arc;
 
 /// What the check lets pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,6 +108,7 @@ impl Checked {
 
 /// What a class rule sees of a node.
 struct View<'a> {
+    graph: &'a Graph,
     node: &'a Node,
     signals: &'a [Signal],
 }
@@ -167,6 +170,10 @@ impl InputView for View<'_> {
             other => panic!("{port} of {} is no list: {other:?}", self.node.spec.name),
         }
     }
+
+    fn picture(&self, port: &str) -> Option<&Picture> {
+        self.graph.images.get(self.choice(port)).map(Arc::as_ref)
+    }
 }
 
 /// Finds the statistics of every signal.
@@ -184,6 +191,7 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
     for (index, node) in graph.nodes.iter().enumerate() {
         let id = NodeId(u32::try_from(index).expect("at most a million nodes"));
         let behaviour = (node.spec.class)(&View {
+            graph: &graph,
             node,
             signals: &signals,
         });

@@ -1,7 +1,7 @@
 //! Node specs as data: the reference pages, the JSON Schema and the catalogue dump are generated
 //! from them, and the resolver checks documents against them.
 
-use crate::Type;
+use crate::{Picture, Type};
 
 /// What kind of node it is; orders the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -293,6 +293,8 @@ pub trait InputView {
     fn in_space(&self, port: &str) -> bool;
     /// The stops of a uniform port, as places and the means of their values' components.
     fn stops(&self, port: &str) -> Vec<[f32; 2]>;
+    /// The picture that a port names, if there is one.
+    fn picture(&self, port: &str) -> Option<&Picture>;
 }
 
 /// The node's class rule.

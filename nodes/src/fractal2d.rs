@@ -18,10 +18,13 @@ static SPEC: NodeSpec = NodeSpec {
         computes: "pivot + amplitude/4 · Σ_k diminishᵏ N_k(lacunarityᵏ · frequency · texcoord), \
             with N_k independent noises of `noise2d`, k from 0 up to `octaves`. Of 3.25 octaves the \
             fourth has a quarter of its amplitude.",
-        statistics: "Gaussian with mean `pivot` and variance (amplitude/4)² Σ_k diminish²ᵏ. Each \
+        statistics: "Gaussian with mean `pivot` and variance (amplitude/4)² Σ_k diminish²ᵏ; the \
+            range is ±5 standard deviations in practice. The spectrum is the sum of the octaves’, each \
+            that of `noise2d`, finer by lacunarityᵏ. Each \
             octave is filtered as `noise2d` is; octaves are independent, so gradients and Hessians \
             add and so do the remainders.",
-        accuracy: "As `noise2d`, octave by octave.",
+        accuracy: "As `noise2d`, octave by octave; held by `nodes/tests/noise.rs`, `nodes/tests/perlin.rs` \
+            and, for mean and variance, `tests/tests/statistics.rs`.",
         references: "Perlin 1985; Musgrave et al. 1989; Bruneton & Neyret 2012 §2.2.",
     },
     inputs: &[

@@ -18,7 +18,9 @@ static SPEC: NodeSpec = NodeSpec {
         computes: "pivot + amplitude/4 · Σ_k diminishᵏ N_k(lacunarityᵏ · frequency · position), with N_k \
             independent noises of `noise3d`, k from 0 up to `octaves`; the last one of a fractional \
             count has that share of its amplitude.",
-        statistics: "Gaussian with mean `pivot` and variance (amplitude/4)² Σ_k diminish²ᵏ. Each octave is \
+        statistics: "Gaussian with mean `pivot` and variance (amplitude/4)² Σ_k diminish²ᵏ; the \
+            range is ±5 standard deviations in practice. The spectrum is the sum of the octaves’, each \
+            that of `noise3d`, finer by lacunarityᵏ. Each octave is \
             filtered as `noise3d` is; octaves are independent, so gradients and Hessians add and so \
             do the remainders.",
         accuracy: "As `noise3d`, octave by octave. Held by `nodes/tests/volume.rs`.",
@@ -31,7 +33,7 @@ static SPEC: NodeSpec = NodeSpec {
     output: OutputType::Exactly(Type::Float),
     class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "granite",
-        "nodes": { "fractal3d": { "type": "fractal3d", "inputs": { "frequency": 4, "octaves": 4, "pivot": 0.5 } } },
+        "nodes": { "fractal3d": { "type": "fractal3d", "inputs": { "frequency": 4, "octaves": 4, "pivot": 0.5, "kernel": "quintic", "period": 4 } } },
         "outputs": { "out": { "node": "fractal3d" } } }"#,
 };
 

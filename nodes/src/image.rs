@@ -32,7 +32,8 @@ static SPEC: NodeSpec = NodeSpec {
             (`periodic`), its last texel (`clamp`), or the picture reversed (`mirror`). Grey spreads \
             to colours, alpha is 1 where there is none, `float` is the first channel. Without a \
             file, `default` everywhere.",
-        statistics: "A pyramid holds the mean and the covariance of the channels under Gaussians of \
+        statistics: "Mean, variance, range and spectrum are the picture’s, the spectrum with the \
+            sinc⁴ of the interpolation. A pyramid holds the mean and the covariance of the channels under Gaussians of \
             σ = 1, 1.4, 2, 2.8, … texels; level 0 is the interpolated picture itself. An elongated \
             footprint is gathered from up to 25 probes along its longer axis with weights (1 − \
             k²/ρ²)², up to 10 times as long as wide; beyond that the shorter axis is taken for \

@@ -27,7 +27,9 @@ static SPEC: NodeSpec = NodeSpec {
             `noise2d` of variance 1 at lacunarityᵏ · frequency · texcoord, k from 0 up to `octaves`. \
             The last factor of a fractional count is 1 + share · (factor − 1).",
         statistics: "Mean pivot + amplitude · offsetⁿ, variance amplitude² (Π_k (offset² + diminish²ᵏ/16) − \
-            offset²ⁿ) for n octaves; the dominant wavelength is that of the first octave; with the \
+            offset²ⁿ) for n octaves; the range is amplitude · Π_k (offset ± 1.25 · diminishᵏ) in \
+            practice. The spectrum is that of the octaves and of all their products, and the \
+            dominant wavelength that of the first octave; with the \
             default ports max |CDF − Φ| is 0.025. The octaves are independent, and the product of \
             filtered ones is exact in mean, variance and covariance.",
         accuracy: "The mean and the variance of the product are exact for Gaussian octaves; the rest is \

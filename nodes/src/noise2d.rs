@@ -35,7 +35,8 @@ static SPEC: NodeSpec = NodeSpec {
             Σ w(d_x) w(d_y) g·d over the four corners of a cell, w(t) = 1 − 10|t|³ + 15t⁴ − 6|t|⁵ \
             and g a random direction; the dominant wavelength is 1.70 cells.",
         statistics: "Gaussian with mean `pivot` and standard deviation amplitude/4; max |CDF − Φ| is \
-            0.0046 (`quintic`: 0.0127, and at most 3.4 standard deviations). Over a footprint of covariance Σ (in cells), the mean, gradient and Hessian are \
+            0.0046 (`quintic`: 0.0127). The range is ±5 standard deviations in practice (`quintic`: \
+            ±3.4 at most). Over a footprint of covariance Σ (in cells), the mean, gradient and Hessian are \
             those of the field filtered by Σ, in closed form with T = a²I + Σ in place of a²I; the \
             remainder is the ensemble variance F(0) − F(Σ) less the part of the derivatives. \
             `quintic` is filtered by the polynomials of w up to a standard deviation of 0.16 cells \

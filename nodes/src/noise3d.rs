@@ -29,7 +29,8 @@ static SPEC: NodeSpec = NodeSpec {
             Σ w(d_x) w(d_y) w(d_z) g·d over the eight corners of a cell, w(t) = 1 − 10|t|³ + 15t⁴ \
             − 6|t|⁵ and g a random direction; the dominant wavelength is 1.93 cells.",
         statistics: "Gaussian with mean `pivot` and standard deviation amplitude/4; max |CDF − Φ| is \
-            0.002 (`quintic`: 0.016, and at most 4.54 standard deviations). The spectrum is one \
+            0.002 (`quintic`: 0.016). The range is ±5 standard deviations in practice (`quintic`: \
+            ±4.54 at most). The spectrum is one \
             band: 0 at frequency 0 with a fourth power (`quintic`: a square). \
             A footprint is a Gaussian on the surface, in space one of covariance Σ of rank 2: mean, \
             gradient and Hessian are those of the field filtered by Σ, in closed form with \

@@ -31,7 +31,7 @@ static SPEC: NodeSpec = NodeSpec {
             The profile then is a transfer of the phase: sin, or the piecewise linear wave, with its \
             mean, slope and distortion. Mean `pivot` over the plane, and standard deviation \
             amplitude/2 times √½ (sine), 1/√3 (triangle, sawtooth) or 1 (square). It is not Gaussian: \
-            max |CDF − Φ| is 0.098 (sine), 0.058 (triangle, sawtooth) or 0.342 (square). The \
+            max |CDF − Φ| is 0.098 (sine), 0.058 (triangle, sawtooth) or 0.342 (square). The range is pivot ± amplitude/2. The \
             spectrum has the band around `frequency`, and its harmonics by the profile.",
         accuracy: "The phase around a zero of the field is not Gaussian. For one octave and one \
             direction the filtered mean is within 0.08, 0.06, 0.11, 0.18 and 0.09 standard deviations \

@@ -29,8 +29,10 @@ static SPEC: NodeSpec = NodeSpec {
             `noise2d` of variance 1 at lacunarityᵏ · frequency · texcoord; the last one of a \
             fractional count has that share of its amplitude.",
         statistics: "The first octave has mean (offset − 0.1995)² + 0.0227; with the default ports all \
-            three have mean 1.12 and standard deviation 0.31, max |CDF − Φ| is 0.07. The dominant \
-            wavelength is half of the noise’s. Each octave is a filtered noise put through the \
+            three have mean 1.12 and standard deviation 0.31, max |CDF − Φ| is 0.07. The range is \
+            from `pivot` to pivot + amplitude · offset² Σ_k diminishᵏ while |N_k| stays below \
+            8 · offset. The spectrum of an octave lies around frequency 0 and around twice that of \
+            the noise: the dominant wavelength is half of the noise’s. Each octave is a filtered noise put through the \
             ridge, (offset − |x|/4)², in closed form; its weight is the clamp of the one before, \
             with the covariance between them, and products are Isserlis’s.",
         accuracy: "After a smooth step or a step, the mean is within 0.043 and 0.071 (RMS over \

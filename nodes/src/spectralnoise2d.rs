@@ -23,7 +23,7 @@ static SPEC: NodeSpec = NodeSpec {
         statistics: "Mean `pivot`, standard deviation amplitude/4; the noise repeats after 1024 periods of \
             `frequency`. With n = (Σ a²)²/Σ a⁴, the number \
             of equal waves with the same fourth cumulant, max |CDF − Φ| is 0.044/n: 0.0014 for a \
-            band of 32 waves. The range is amplitude/4 · √(2n) at most for equal waves. With \
+            band of 32 waves. The range is amplitude/4 · √(2n) at most for equal waves. The spectrum is a line at the frequency of each wave. With \
             w = 2πf and q = wᵀΣw each wave is damped by e^{−q/2}; gradient and Hessian are its \
             derivatives, and the remainder is Σ a²/2 (1 − e^{−q} Σ_k qᵏ/k!); by `local`, the part of it that the value foretells of \
             the Hessian, ½‖E[ggᵀ]‖² M²/F² with F = E[M²], takes its local value. No three waves nearly \

@@ -20,7 +20,9 @@ static SPEC: NodeSpec = NodeSpec {
             N_k independent noises of `noise2d` of variance 1, k from 0 up to `octaves`; the last one \
             of a fractional count has that share of its amplitude. At least `pivot`.",
         statistics: "Mean pivot + amplitude/4 · √(2/π) Σ_k diminishᵏ, variance (amplitude/4)² (1 − 2/π) \
-            Σ_k diminish²ᵏ; the dominant wavelength is half of the noise’s; max |CDF − Φ| is 0.06. \
+            Σ_k diminish²ᵏ; the range begins at `pivot`; max |CDF − Φ| is 0.06. The spectrum of an \
+            octave lies around frequency 0 and around twice that of the noise: the dominant \
+            wavelength is half of the noise’s. \
             Each octave is a filtered noise put through |x| (a folded normal); of an octave that \
             the footprint has removed its mean and its variance are left.",
         accuracy: "After a smooth step or a step, the mean is within 0.047 and 0.077 (RMS over \

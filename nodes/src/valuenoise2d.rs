@@ -30,11 +30,11 @@ static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "pivot + amplitude · (V(frequency · texcoord) − ½), where V blends values uniform \
             in [0, 1] at the lattice points by w(t) = 1 − 10|t|³ + 15t⁴ − 6|t|⁵ along each axis \
-            (Perlin’s quintic fade). The range is pivot ± amplitude/2. The spectrum falls from \
-            wavelength ∞ on; times the frequency, it peaks at 3.14 cells.",
+            (Perlin’s quintic fade).",
         statistics: "Mean `pivot`, standard deviation 0.226 · amplitude over random lattices and \
             positions (0.289 at a lattice point, 0.151 in the middle of a cell); max |CDF − Φ| is \
-            0.030. Over a footprint of covariance Σ (in cells): up to a standard deviation of \
+            0.030. The range is pivot ± amplitude/2. The spectrum falls from frequency 0 on; times \
+            the frequency, it peaks at a wavelength of 3.14 cells. Over a footprint of covariance Σ (in cells): up to a standard deviation of \
             0.16 cells by the polynomials of w, from 0.1 cells on by (1.003 + P(d_x) + P(d_y)) \
             e^{−d·d/2b²}, b = 0.3775, P(t) = 2.333t² − 6.760t⁴ + 3.180t⁶, in place of \
             w(d_x) w(d_y), which any Σ filters in closed form. The \

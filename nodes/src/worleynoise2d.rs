@@ -21,7 +21,9 @@ static SPEC: NodeSpec = NodeSpec {
             cells; with `solid` it is the random number of [0, 1) of that point, or the second's \
             less the first's. Points within 1.5 cells are found.",
         statistics: "Not Gaussian: max |CDF − Φ| is about 0.04 (F1, F2), 0.1 (F2 − F1) or 0.058 \
-            (solid). Over the plane at a jitter of 1 the mean and standard deviation are 0.429 and \
+            (solid). The range is 0 to √2 (F1), to 1.81 (F2), or [0, 1) (solid; differences ±1). The \
+            spectrum is broad up to about a cycle a cell and falls from there, as k⁻⁵ by the creases \
+            of distances and as k⁻³ by the edges of solid regions. Over the plane at a jitter of 1 the mean and standard deviation are 0.429 and \
             0.190 (F1), 0.699 and 0.177 (F2), 0.270 and 0.202 (F2 − F1), ½ and 0.289 (solid). Over \
             a footprint the values at seven places (a rule of degree 5) give mean, gradient and \
             variance; their mean is drawn towards that of the plane, and their variance towards the \

@@ -2,7 +2,7 @@
 
 use mipless_codegen::cpu::{Footprint, eval_program};
 use mipless_codegen::{Method, Options, PixelFilter, compile};
-use mipless_graph::{CheckOptions, Picture, check, load};
+use mipless_graph::{CheckOptions, Class, Picture, check, load};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -276,4 +276,81 @@ fn textures_by_example_know_their_moments() {
         );
         assert!(sd < 0.15, "{ratio}:1 at {degrees}°, σ = {sigma}: sd {sd}");
     }
+}
+
+/// The values of `byexample` in one channel, at independent places.
+fn sample(json: &str, count: usize) -> Vec<f64> {
+    let at: Vec<_> = (0..count)
+        .map(|i| {
+            let fraction = [0.754_877_666, 0.569_840_29].map(|step| (i as f64 * step).fract());
+            let place = [3 * (i % 200), 3 * (i / 200)].map(|k| k as f64);
+            footprint([0, 1].map(|k| place[k] + fraction[k]), [[0.0; 2]; 2])
+        })
+        .collect();
+    evaluate(json, Method::Point, PixelFilter::Gaussian(1.0), &at)[0].clone()
+}
+
+#[test]
+fn the_check_states_how_far_an_example_is_from_a_gaussian() {
+    let node = r#"{ "type": "byexample", "inputs": { "file": "a.png", "signature": "float" } }"#;
+    let json = format!(
+        r#"{{ "version": 1, "name": "test", "nodes": {{ "n": {node} }}, "outputs": {{ "out": {{ "node": "n" }} }} }}"#
+    );
+    let specs = mipless_nodes::specs();
+    let mut graph = load(&json, &specs).graph.expect("loads");
+    graph.images.insert("a.png", Arc::new(picture()));
+    let checked = check(graph, &CheckOptions::default()).expect("checks");
+    let Class::Moments { deviation } = checked.signals().last().expect("a signal").class else {
+        panic!("an example is not Gaussian");
+    };
+    let deviation = f64::from(deviation);
+    assert!((0.005..0.2).contains(&deviation), "{deviation}");
+    // The texture has the example's mean, variance and histogram: three tests, at 4.5 standard
+    // errors and Kolmogorov's bound at 1e-5.
+    let mut values = sample(&json, 40_000);
+    let numbers = picture();
+    let texels: Vec<f64> = (numbers.numbers().chunks_exact(3))
+        .map(|texel| f64::from(texel[0]))
+        .collect();
+    let moments = |of: &[f64]| {
+        let n = of.len() as f64;
+        let mean = of.iter().sum::<f64>() / n;
+        let power = |k| of.iter().map(|x| (x - mean).powi(k)).sum::<f64>() / n;
+        [mean, power(2), power(4)]
+    };
+    let ([mean, variance, _], [found, square, fourth]) = (moments(&texels), moments(&values));
+    let n = values.len() as f64;
+    assert!(
+        (found - mean).abs() <= 4.5 * (square / n).sqrt() + 1e-3,
+        "{found}, not {mean}"
+    );
+    let error = ((fourth - square * square) / n).sqrt();
+    // Interpolation between texels removes 2 % of the variance.
+    assert!(
+        (square - variance).abs() <= 4.5 * error + 0.03 * variance,
+        "{square}, not {variance}"
+    );
+    values.sort_by(f64::total_cmp);
+    let worst = (values.iter().enumerate())
+        .map(|(i, x)| (normal((x - found) / square.sqrt()) - (i as f64 + 0.5) / n).abs())
+        .fold(0.0, f64::max);
+    println!("{deviation} {worst}");
+    assert!(
+        (worst - deviation).abs() <= 2.47 / n.sqrt() + 0.01,
+        "{worst}, not {deviation}"
+    );
+}
+
+/// Φ by Simpson's rule.
+fn normal(z: f64) -> f64 {
+    let n = 200;
+    let h = z / f64::from(n);
+    let f = |x: f64| (-0.5 * x * x).exp();
+    let sum: f64 = (0..n)
+        .map(|i| {
+            let x = f64::from(i) * h;
+            f(x) + 4.0 * f(x + 0.5 * h) + f(x + h)
+        })
+        .sum();
+    0.5 + sum * h / 6.0 / TAU.sqrt()
 }

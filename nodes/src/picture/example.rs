@@ -164,6 +164,27 @@ fn quantile(p: f64, from: f64) -> f64 {
     x
 }
 
+/// max |CDF − Φ| of numbers by their mean and variance; 0 if all are equal.
+pub(crate) fn deviation(mut numbers: Vec<f64>) -> f64 {
+    let n = numbers.len() as f64;
+    let mean = numbers.iter().sum::<f64>() / n;
+    let variance = numbers.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n;
+    if variance <= 0.0 {
+        return 0.0;
+    }
+    numbers.sort_by(f64::total_cmp);
+    let mut worst = 0.0f64;
+    let mut first = 0;
+    // Equal numbers are one step.
+    for run in numbers.chunk_by(|x, y| x == y) {
+        let share = distribution((run[0] - mean) / variance.sqrt());
+        let ends = [first, first + run.len()].map(|rank| (rank as f64 / n - share).abs());
+        worst = worst.max(ends[0]).max(ends[1]);
+        first += run.len();
+    }
+    worst
+}
+
 /// Unit eigenvectors of a symmetric matrix, the largest eigenvalue first: Jacobi's rotations. Each
 /// has a positive sum, so that they do not depend on the way.
 fn principal(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
@@ -219,6 +240,18 @@ mod tests {
             assert!((distribution(x) - p).abs() < 1e-14);
             assert!((quantile(p, -6.0) - x).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn deviations_are_those_of_known_distributions() {
+        let of = |f: &dyn Fn(f64) -> f64| {
+            deviation((0..10_000).map(|i| f((f64::from(i) + 0.5) / 1e4)).collect())
+        };
+        // Gaussian, uniform, two values.
+        assert!(of(&|p| quantile(p, -6.0)) < 1e-3);
+        assert!((of(&|p| p) - 0.058).abs() < 1e-3);
+        assert!((of(&|p| (2.0 * p).floor()) - 0.341_3).abs() < 1e-3);
+        assert_eq!(of(&|_| 0.25), 0.0);
     }
 
     #[test]

@@ -56,6 +56,15 @@ pub(crate) const COLORSPACE: PortSpec = PortSpec::new(
      `srgb_texture` for colours of 8 and 16 bits.",
 );
 
+/// Whether the colours of a picture become linear, by the port `colorspace`.
+pub(crate) fn linearises(colorspace: &str, picture: &Picture, color: bool) -> bool {
+    match colorspace {
+        "srgb_texture" => true,
+        "lin_rec709" => false,
+        _ => picture.encoded() && color,
+    }
+}
+
 /// The planes of a picture as a node of this type sees them, and a key that tells them apart.
 pub(crate) fn planes(
     lower: &Lower<'_>,
@@ -64,11 +73,7 @@ pub(crate) fn planes(
     ty: Type,
 ) -> (Arc<Planes>, String) {
     let color = matches!(ty, Type::Color3 | Type::Color4);
-    let linearise = match lower.choice(node, "colorspace") {
-        "srgb_texture" => true,
-        "lin_rec709" => false,
-        _ => picture.encoded() && color,
-    };
+    let linearise = linearises(lower.choice(node, "colorspace"), picture, color);
     let file = lower.choice(node, "file");
     let key = format!("{file:?} {ty} {linearise}");
     let make = || Planes::of(picture, ty, linearise);
