@@ -1,4 +1,4 @@
-//! The graphs that every suite runs over: those of `graphs/` and the example of every node.
+//! The graphs that every suite runs over: those of `graphs/`, the example of every node, and a few more.
 
 use crate::root;
 use mipless::{Diagnostic, Folder, Texture};
@@ -79,10 +79,52 @@ pub fn examples() -> Vec<Case> {
         .collect()
 }
 
-/// All graphs, then all examples.
+/// What no graph and no example has: an input between the bends of a region, an amplitude from one,
+/// and a colour map from a picture.
+///
+/// # Panics
+/// If one has mistakes.
+pub fn further() -> Vec<Case> {
+    let live = r##"{
+  "version": 1,
+  "name": "live",
+  "inputs": { "p": { "type": "float", "value": 1, "min": 0.5, "max": 2 } },
+  "nodes": {
+    "noise": { "type": "noise2d", "inputs": { "frequency": 5, "amplitude": 4 } },
+    "folds": { "type": "absval", "inputs": { "in": { "node": "noise" } } },
+    "scaled": { "type": "multiply", "inputs": { "in1": { "node": "folds" }, "in2": { "input": "p" } } },
+    "color": { "type": "colorramp", "inputs": { "in": { "node": "scaled" }, "stops": [
+      { "at": 0, "value": "#102030" }, { "at": 0.2, "value": "#f0e0a0" }, { "at": 0.4, "value": "#804020" } ] } },
+    "grain": { "type": "noise2d", "inputs": { "frequency": 9, "amplitude": { "input": "p" }, "seed": 1 } },
+    "ridges": { "type": "absval", "inputs": { "in": { "node": "grain" } } },
+    "cracks": { "type": "step", "inputs": { "in": { "node": "ridges" }, "edge": 0.05 } },
+    "both": { "type": "multiply", "inputs": { "in1": { "node": "color" }, "in2": { "node": "cracks" } } }
+  },
+  "outputs": { "out": { "node": "both" } }
+}"##;
+    let picture = r#"{
+  "version": 1,
+  "name": "picture",
+  "nodes": {
+    "x": { "type": "noise2d", "inputs": { "frequency": 3, "pivot": 0.5 } },
+    "y": { "type": "noise2d", "inputs": { "frequency": 4, "pivot": 0.5, "seed": 2 } },
+    "color": { "type": "colormap2d", "inputs": { "in1": { "node": "x" }, "in2": { "node": "y" },
+      "file": "images/moss.png", "addressmode": "periodic" } }
+  },
+  "outputs": { "out": { "node": "color" } }
+}"#;
+    [("live", live), ("picture", picture)]
+        .map(|(name, text)| Case::new(name, text))
+        .to_vec()
+}
+
+/// All graphs, then all examples, then what none of them has.
 ///
 /// # Panics
 /// If one cannot be read or has mistakes.
 pub fn all() -> Vec<Case> {
-    graphs().into_iter().chain(examples()).collect()
+    (graphs().into_iter())
+        .chain(examples())
+        .chain(further())
+        .collect()
 }

@@ -210,6 +210,9 @@ fn evaluate(
     out
 }
 
+/// The means of a component under some Gaussians, and how far they may be off.
+type Wanted = (Vec<f32>, f32);
+
 /// How many parts the region needs on each side so that its mean is off by at most [`TOLERANCE`] of
 /// its values under a few Gaussians, for the defaults of the graph's inputs and the ends of their
 /// sliders: the process at these centres and standard deviations, and footprints that have removed half of its deviation. 0 where the
@@ -232,8 +235,7 @@ fn side(compiler: &Compiler<'_>, index: usize, chain: &Chain, scales: &[[f32; 2]
         .collect();
     let gaussians = [means, sds];
     let settings = [Setting::Default, Setting::Least, Setting::Most];
-    // For each setting and component, the means under the Gaussians and how far they may be off.
-    let wanted: Vec<(Setting, Vec<(Vec<f32>, f32)>)> = (settings.into_iter())
+    let wanted: Vec<(Setting, Vec<Wanted>)> = (settings.into_iter())
         .map(|setting| {
             let values = evaluate(compiler, &values, std::slice::from_ref(&places), setting);
             let of = values.iter().map(|values| {
