@@ -213,6 +213,8 @@ pub struct Lower<'a> {
     parameter_scalars: Vec<usize>,
     /// The footprint of each source, in wavelengths of its dominant detail.
     footprints: Vec<Value>,
+    /// The footprint of each source and pattern, in wavelengths that tell its slopes.
+    details: Vec<Value>,
     /// Whether something that is not linear follows a source.
     nonlinear: bool,
 }
@@ -249,6 +251,7 @@ impl<'a> Lower<'a> {
             sums: vec![None; compiler.graph.nodes.len()],
             parameter_scalars,
             footprints: Vec::new(),
+            details: Vec::new(),
             nonlinear: false,
         }
     }

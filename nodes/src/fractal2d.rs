@@ -41,7 +41,7 @@ pub(crate) const DEF: NodeDef = NodeDef {
         let octaves = tiled_octaves(lower, node);
         let position = position(lower, node);
         let kernel = Kernel::of(lower, node);
-        kernel.report(lower, &position);
+        kernel.report_octaves(lower, &position, octaves);
         let field = kernel.filtered(lower, &position, octaves);
         shaped(lower, node, &field, octaves.sd(), &position)
     },

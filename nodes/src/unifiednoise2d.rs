@@ -180,7 +180,7 @@ fn raw(lower: &mut Lower<'_>, node: &Node, position: &[Signal]) -> Signal {
                     period: 0,
                 }
             };
-            Kernel::Gaussian.report(lower, position);
+            Kernel::Gaussian.report_octaves(lower, position, octaves);
             let field = Kernel::Gaussian.filtered(lower, position, octaves);
             let extent = EXTENT * octaves.sd();
             let unit = field.at(lower, position).with_range([-extent, extent]);

@@ -43,6 +43,20 @@ impl Kernel {
     /// Reports what the footprint is to a source at this position, in cells of its first octave,
     /// which dominates.
     pub(crate) fn report(self, lower: &mut Lower<'_>, position: &[Signal]) {
+        self.report_finer(lower, position, 1.0);
+    }
+
+    /// The same of a sum of octaves.
+    pub(crate) fn report_octaves(
+        self,
+        lower: &mut Lower<'_>,
+        position: &[Signal],
+        octaves: Octaves,
+    ) {
+        self.report_finer(lower, position, octaves.finer());
+    }
+
+    fn report_finer(self, lower: &mut Lower<'_>, position: &[Signal], finer: f32) {
         let wavelength = match self {
             Self::Gaussian => lattice::WAVELENGTH,
             Self::Quintic(kind) => kind.wavelength(),
@@ -51,6 +65,6 @@ impl Kernel {
         let spread = Spread::of(b, position);
         let size = b.sqrt(spread.eigenvalues[0]);
         let wavelengths = b.scale(size, 1.0 / wavelength);
-        lower.source_footprint(wavelengths);
+        lower.source_detail(wavelengths, finer);
     }
 }
