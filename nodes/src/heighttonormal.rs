@@ -31,12 +31,14 @@ static SPEC: NodeSpec = NodeSpec {
             variance is taken for isotropic and for R(2π/λ)²/2 in each direction: R is the height's \
             variance beyond its Hessian, 2π/λ the root mean square wavenumber of the coarsest noise, wave \
             or wall of bevelled bricks upstream (other patterns name none, and lose none). \
-            The normal is then a cubature of degree 5 over the two slopes, as a Gaussian.",
+            The normal is then a cubature of 18 nodes over the two slopes, as a Gaussian.",
         accuracy: "Exact for a plane, and in its mean slope for every height that is filtered exactly. \
             Largest error of a component over footprints from 0.01 to 5 wavelengths, round and 8:1 (root \
             mean square): 0.033 (0.006) for a noise whose slopes have a standard deviation of 0.6, 0.035 \
             (0.009) for one of three octaves, 0.008 (0.002) for a sine wave of slopes up to 0.5, 0.09 \
-            (0.018) for bricks with bevels of 51 degrees, whose slopes are no Gaussian. A height with jumps \
+            (0.018) for bricks with bevels of 51 degrees, whose slopes are no Gaussian. Where \
+            several sources shape the height, the coarsest alone is asked, and none knows its wavelength \
+            beyond 10⁴ of its cells. A height with jumps \
             has no slope there: its edges should be ramps. Held by `nodes/src/pattern/tests/upstream.rs` \
             against dense sums.",
         references: "Olano & Baker 2010, *LEAN Mapping* (slopes have means and variances, normals do \
@@ -120,7 +122,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
         }
     }
     let ranges = [[0.0, 1.0], [0.0, 1.0], [0.5, 1.0]];
-    lower.algebra.cubature(&tilts, &ranges, |b, tilt| {
+    lower.algebra.fine_cubature(&tilts, &ranges, |b, tilt| {
         let square = b.dot(tilt, tilt);
         let square = b.offset(square, 1.0);
         let length = b.sqrt(square);
