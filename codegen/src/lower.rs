@@ -248,7 +248,9 @@ pub struct Lower<'a> {
     parameter_scalars: Vec<usize>,
     /// The footprint of each source, in wavelengths of its dominant detail.
     footprints: Vec<Value>,
-    /// Whether they are what the function is for.
+    /// The footprint of each source and pattern, in wavelengths that tell its slopes.
+    details: Vec<Value>,
+    /// Whether they are asked for.
     measures: bool,
     /// Which nodes nothing but their footprints is asked of.
     only_measured: Vec<bool>,
@@ -292,6 +294,7 @@ impl<'a> Lower<'a> {
             sums: vec![None; compiler.graph.nodes.len()],
             parameter_scalars,
             footprints: Vec::new(),
+            details: Vec::new(),
             measures: false,
             only_measured: Vec::new(),
             is_only_measured: false,

@@ -6,6 +6,7 @@ use crate::pattern::bond::{Bond, Brick};
 use crate::pattern::pulse::Pulse;
 use crate::pattern::random::numbered;
 use crate::pattern::separable::{Pattern, Soft, Term, filtered};
+use crate::pattern::slope::report_bricks;
 use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -187,6 +188,9 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let aspect = b.div(columns, rows);
     let [mortar, bevel] = [mortar, bevel].map(|v| b.clamp(v, 0.0, 1.0));
     let [mortar_x, bevel_x] = [mortar, bevel].map(|v| b.mul(v, aspect));
+    let edges = [mortar_x, bevel_x, mortar, bevel];
+    report_bricks(lower, &texcoord, [columns, rows], edges);
+    let b = lower.b();
     let terms = |square: bool| {
         move |b: &mut Builder, p: &[Value]| {
             let wall = bond.bricks(b, p[0]);

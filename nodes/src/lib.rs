@@ -148,6 +148,7 @@ mod tiledcloverleafs;
 mod tiledhexagons;
 mod trianglewave;
 mod turbulence2d;
+mod unifiednoise2d;
 mod unpremult;
 mod valuenoise2d;
 mod warp;
@@ -179,6 +180,7 @@ static CATALOGUE: &[NodeDef] = &[
     ridged2d::DEF,
     spectralnoise2d::DEF,
     turbulence2d::DEF,
+    unifiednoise2d::DEF,
     valuenoise2d::DEF,
     whitenoise2d::DEF,
     worleynoise2d::DEF,

@@ -8,6 +8,7 @@ pub(crate) mod random;
 pub(crate) mod region;
 pub(crate) mod sawtooth;
 pub(crate) mod separable;
+pub(crate) mod slope;
 pub(crate) mod soft;
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 
 use crate::componentwise::{product, sum, transfer};
 use crate::grid::TEXCOORD;
+use crate::noise::field::Spread;
 use crate::rotate2d::turn;
 use mipless_codegen::moments::{LinearWave, Signal, Sine, SquareWave};
 use mipless_codegen::{Bundle, Lower, NodeDef};
@@ -102,6 +103,19 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let distance = sum(lower, &along, &across);
     let place = product(lower, &distance, &frequency);
     let place = sum(lower, &place, &phase);
+    // A sine has one wavelength; of a triangle √(E|∇|²/Var) is 2√12/2π times as much.
+    let finer = match lower.choice(node, "shape") {
+        "triangle" => 1.102_66,
+        _ => 1.0,
+    };
+    let b = lower.b();
+    let spread = Spread::of(b, &texcoord);
+    let size = b.sqrt(spread.eigenvalues[0]);
+    let waves = frequency.flat_mean(b);
+    let waves = b.abs(waves);
+    let detail = b.mul(size, waves);
+    let detail = b.scale(detail, finer);
+    lower.pattern_detail(detail);
     let wave = match lower.choice(node, "shape") {
         "triangle" => transfer(lower, &place, &LinearWave::triangle()),
         "saw" => transfer(lower, &place, &LinearWave::sawtooth()),

@@ -199,7 +199,21 @@ impl Lower<'_> {
     /// Reports the footprint of a source, in wavelengths of its dominant detail: `auto` and `split`
     /// decide by it.
     pub fn source_footprint(&mut self, wavelengths: Value) {
+        self.source_detail(wavelengths, 1.0);
+    }
+
+    /// The same of a source whose root mean square wavenumber, √(E|∇|²/Var), is `finer` times that of
+    /// its dominant detail.
+    pub fn source_detail(&mut self, wavelengths: Value, finer: f32) {
         self.footprints.push(wavelengths);
+        let detail = self.algebra.b.scale(wavelengths, finer);
+        self.details.push(detail);
+    }
+
+    /// Reports the footprint of a pattern, in wavelengths of its root mean square wavenumber, to what
+    /// estimates slopes; nothing else depends on it.
+    pub fn pattern_detail(&mut self, wavelengths: Value) {
+        self.details.push(wavelengths);
     }
 }
 

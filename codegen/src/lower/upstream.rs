@@ -41,7 +41,8 @@ pub struct Over {
 pub struct Upstream {
     /// Its components.
     pub components: Vec<Over>,
-    /// The footprint in wavelengths of the coarsest source, 0 without sources.
+    /// The footprint in root mean square wavelengths of the coarsest source or pattern that names one,
+    /// else 0.
     pub wavelengths: Value,
 }
 
@@ -202,6 +203,7 @@ fn function(
     };
     let doc = "A part of the texture over a footprint of its own.";
     let mut lower = Lower::new(compiler, module, Builder::new(name, doc), mode);
+    lower.measures = true;
     let mut uses = vec![0; graph.nodes.len()];
     uses[source.index()] = 1;
     for index in region(compiler, source.index(), &[]) {
@@ -215,14 +217,14 @@ fn function(
     let bundle: Bundle = lower.bundles[source.index()]
         .take()
         .expect("what is asked for is read once more than by its readers");
-    let footprints = std::mem::take(&mut lower.footprints);
+    let details = std::mem::take(&mut lower.details);
     let mut b = lower.algebra.b;
     for (i, signal) in bundle.iter().enumerate() {
         results(&mut b, i, signal);
     }
-    let mut coarsest = footprints.first().copied().unwrap_or_else(|| b.f32(0.0));
-    for &footprint in footprints.iter().skip(1) {
-        coarsest = b.min(coarsest, footprint);
+    let mut coarsest = details.first().copied().unwrap_or_else(|| b.f32(0.0));
+    for &detail in details.iter().skip(1) {
+        coarsest = b.min(coarsest, detail);
     }
     b.result("wavelengths", coarsest);
     b.finish(module)

@@ -56,6 +56,26 @@ fn nodes(dimensions: usize) -> Vec<([f32; 4], f32)> {
     all
 }
 
+/// Three radii, r² = 2x at the nodes x of Gauss–Laguerre, of six angles each: for functions of two
+/// numbers that are not near a quadratic within the spread.
+fn polar() -> Vec<([f32; 4], f32)> {
+    const LAGUERRE: [(f64, f64); 3] = [
+        (0.415_774_556_783_479, 0.711_093_009_929_173),
+        (2.294_280_360_279_04, 0.278_517_733_569_241),
+        (6.289_945_082_937_48, 0.010_389_256_501_586),
+    ];
+    let mut all = Vec::new();
+    for (x, weight) in LAGUERRE {
+        for k in 0..6 {
+            let (sine, cosine) = (std::f64::consts::FRAC_PI_3 * f64::from(k)).sin_cos();
+            let radius = (2.0 * x).sqrt();
+            let node = [(radius * cosine) as f32, (radius * sine) as f32, 0.0, 0.0];
+            all.push((node, (weight / 6.0) as f32));
+        }
+    }
+    all
+}
+
 /// The lower triangle of L with L Lᵀ = Σ, and the inverses of its diagonal.
 struct Triangle {
     rows: Vec<Vec<Value>>,
@@ -69,6 +89,30 @@ impl Algebra {
     /// If more than four inputs have a spread: a bug of the caller.
     pub fn cubature(
         &mut self,
+        inputs: &[Signal],
+        ranges: &[[f32; 2]],
+        function: impl Fn(&mut Builder, &[Value]) -> Vec<Value>,
+    ) -> Vec<Signal> {
+        self.cubature_by(nodes, inputs, ranges, function)
+    }
+
+    /// The same for two signals whose function is not near a quadratic: 18 nodes instead of 7.
+    pub fn fine_cubature(
+        &mut self,
+        inputs: &[Signal; 2],
+        ranges: &[[f32; 2]],
+        function: impl Fn(&mut Builder, &[Value]) -> Vec<Value>,
+    ) -> Vec<Signal> {
+        let nodes = |dimensions| match dimensions {
+            2 => polar(),
+            _ => nodes(dimensions),
+        };
+        self.cubature_by(nodes, inputs, ranges, function)
+    }
+
+    fn cubature_by(
+        &mut self,
+        nodes: impl Fn(usize) -> Vec<([f32; 4], f32)>,
         inputs: &[Signal],
         ranges: &[[f32; 2]],
         function: impl Fn(&mut Builder, &[Value]) -> Vec<Value>,

@@ -82,9 +82,9 @@ impl Kernel {
         })
     }
 
-    /// Reports what the footprint is to a source at this position, in cells of its first octave,
-    /// which dominates.
-    pub(crate) fn report(self, lower: &mut Lower<'_>, position: &[Signal]) {
+    /// Reports what the footprint is to a sum of octaves at this position, in cells of the first
+    /// octave, which dominates.
+    pub(crate) fn report(self, lower: &mut Lower<'_>, position: &[Signal], octaves: Octaves) {
         if !lower.measures() {
             return;
         }
@@ -96,6 +96,6 @@ impl Kernel {
         let spread = Spread::of(b, position);
         let size = b.sqrt(spread.eigenvalues[0]);
         let wavelengths = b.scale(size, 1.0 / wavelength);
-        lower.source_footprint(wavelengths);
+        lower.source_detail(wavelengths, octaves.finer());
     }
 }

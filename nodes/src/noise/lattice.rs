@@ -119,6 +119,18 @@ impl Octaves {
         b.scramble(seed)
     }
 
+    /// The root mean square frequency of the sum, over that of its first octave.
+    pub(crate) fn finer(self) -> f32 {
+        let whole = (0..self.count as i32).map(|k| (1.0, k));
+        let part = (self.part, self.count as i32);
+        let (energy, slopes) = whole.chain([part]).fold((0.0, 0.0), |sums, (share, k)| {
+            let energy = (share * self.diminish.powi(k)).powi(2);
+            let slope = energy * self.lacunarity.powi(2 * k);
+            (sums.0 + energy, sums.1 + slope)
+        });
+        (slopes / energy).sqrt()
+    }
+
     /// The sum over octaves of a noise of variance 1; `octave` is the body of the fold over them.
     pub(super) fn sum(
         self,

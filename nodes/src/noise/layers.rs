@@ -24,8 +24,14 @@ pub(crate) struct Layer {
 /// Their remainders join the private variance of each, whatever becomes of the node.
 pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) -> Vec<Layer> {
     let kernel = Kernel::of(lower, node);
-    kernel.report(lower, &position);
     let octaves = tiled_octaves(lower, node);
+    // What is made of the octaves has the detail of the first one at least.
+    let first = Octaves {
+        count: 1,
+        part: 0.0,
+        ..octaves
+    };
+    kernel.report(lower, &position, first);
     let shares = std::mem::replace(&mut lower.algebra.shares, false);
     let mut position = position;
     let mut period = octaves.period as f32;

@@ -157,7 +157,7 @@ pub(crate) fn octaves_of(
     (factor, extent): (f32, f32),
 ) -> Vec<Signal> {
     let position = position(lower, node);
-    kernel.report(lower, &position);
+    kernel.report(lower, &position, octaves);
     if lower.only_measures() {
         return vec![Signal::constant(lower.b(), 0.0)];
     }

@@ -61,3 +61,50 @@ fn turns_in_space_are_counter_clockwise() {
     let still = of(json!({ "in": [1, 2, 3], "amount": 40, "axis": [0, 0, 0] }));
     assert_eq!(still, [1.0, 2.0, 3.0]);
 }
+
+#[test]
+fn the_unified_noise_is_its_noises() {
+    let of = |node: Value, more: Value| {
+        let mut nodes = json!({ "x": node });
+        for (name, node) in more.as_object().into_iter().flatten() {
+            nodes[name] = node.clone();
+        }
+        let last = if nodes.get("y").is_some() { "y" } else { "x" };
+        let graph = json!({ "version": 1, "name": "same", "nodes": nodes, "outputs": { "out": { "node": last } } });
+        evaluated(&graph.to_string(), Method::Local, &places(0.05)[..6])
+    };
+    let pairs = [
+        (
+            json!({ "type": "perlin" }),
+            json!({ "type": "noise2d", "inputs": { "frequency": 3, "amplitude": 0.5, "pivot": 0.5, "seed": 7 } }),
+        ),
+        (
+            json!({ "type": "fractal", "octaves": 4 }),
+            json!({ "type": "fractal2d", "inputs": { "frequency": 3, "octaves": 4, "seed": 7 } }),
+        ),
+        (
+            json!({ "type": "cell" }),
+            json!({ "type": "cellnoise2d", "inputs": { "frequency": 3, "seed": 7 } }),
+        ),
+        (
+            json!({ "type": "worley", "jitter": 0.6 }),
+            json!({ "type": "worleynoise2d", "inputs": { "frequency": 3, "seed": 7, "jitter": 0.6 } }),
+        ),
+    ];
+    for (mut inputs, other) in pairs {
+        for clamped in [false, true] {
+            inputs["freq"] = json!([3, 3]);
+            inputs["seed"] = json!(7);
+            inputs["clampoutput"] = json!(clamped);
+            let unified = of(
+                json!({ "type": "unifiednoise2d", "inputs": inputs }),
+                json!({}),
+            );
+            let limits = json!({ "y": { "type": "clamp", "inputs": { "in": { "node": "x" } } } });
+            let alone = of(other.clone(), if clamped { limits } else { json!({}) });
+            for (a, b) in unified.iter().flatten().zip(alone.iter().flatten()) {
+                near(&format!("{inputs}"), *a, *b, 1e-6);
+            }
+        }
+    }
+}

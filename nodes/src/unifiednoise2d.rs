@@ -1,0 +1,195 @@
+//! `unifiednoise2d`: one node for the noises that are used most.
+
+use crate::componentwise::{product, sum, transfer};
+use crate::noise::cell;
+use crate::noise::kernel::Kernel;
+use crate::noise::lattice::Octaves;
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
+use crate::noise::source::{Affine, EXTENT, SEED, TEXCOORD};
+use crate::noise::worley::{self, Output, Worley};
+use mipless_codegen::moments::{Piecewise, Signal};
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
+    Range, Type,
+};
+
+/// max |CDF − Φ| of the quadrupole lattice noise, and of octaves of it.
+const DEVIATION: f32 = 0.0046;
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "unifiednoise2d",
+    aliases: &["noise_texture", "unifiednoise"],
+    category: Category::Noise,
+    summary: "Perlin, cell, Worley or fractal noise, remapped to a range.",
+    doc: Doc {
+        computes: "With p = texcoord · freq + offset: raw = ½ + ½ `noise2d`(p) (`perlin`), \
+            `cellnoise2d`(p) (`cell`), `worleynoise2d`(p) (`worley`) or `fractal2d`(p) (`fractal`, around \
+            0), each as its own page says; out = outmin + raw · (outmax − outmin), limited to [outmin, \
+            outmax] where clampoutput. MaterialX numbers the types from 0 to 3; here they have \
+            names, `jitter` moves Worley's points alone, and `seed` selects the noise.",
+        statistics: "Those of the noise that is chosen; the limits are a clamp in closed form, which takes \
+            half of a fractal noise away unless clampoutput is off.",
+        accuracy: "That of `noise2d`, `cellnoise2d`, `worleynoise2d` and `fractal2d`, whose code it shares. \
+            Held by `nodes/src/tests/channel.rs`.",
+        references: "MaterialX 1.39 specification, node `unifiednoise2d`. Perlin 2002, *Improving Noise*; \
+            Worley 1996, *A cellular texture basis function*.",
+    },
+    inputs: &[
+        TEXCOORD,
+        PortSpec::new(
+            "type",
+            PortType::Choice(&["perlin", "cell", "worley", "fractal"]),
+            Default::Choice("perlin"),
+            "Which noise.",
+        ),
+        PortSpec::new(
+            "freq",
+            PortType::Exactly(Type::Vector2),
+            Default::Vector2([1.0, 1.0]),
+            "How many cells fit a unit of the texture space, along u and along v.",
+        )
+        .range(Range::soft(0.25, 64.0))
+        .unit("cells per uv"),
+        PortSpec::new(
+            "offset",
+            PortType::Exactly(Type::Vector2),
+            Default::Vector2([0.0, 0.0]),
+            "The shift, which is added.",
+        )
+        .range(Range::soft(-1.0, 1.0))
+        .unit("cells"),
+        PortSpec::new(
+            "jitter",
+            PortType::Exactly(Type::Float),
+            Default::Float(1.0),
+            "How far Worley's points leave the centres of their cells.",
+        )
+        .uniform()
+        .range(Range::hard(0.0, 1.0)),
+        PortSpec::new(
+            "style",
+            PortType::Choice(&["distance", "solid"]),
+            Default::Choice("distance"),
+            "Worley's distances, or a random number for each region.",
+        ),
+        PortSpec::new(
+            "outmin",
+            PortType::Exactly(Type::Float),
+            Default::Float(0.0),
+            "What 0 becomes.",
+        ),
+        PortSpec::new(
+            "outmax",
+            PortType::Exactly(Type::Float),
+            Default::Float(1.0),
+            "What 1 becomes.",
+        ),
+        PortSpec::new(
+            "clampoutput",
+            PortType::Exactly(Type::Boolean),
+            Default::Boolean(true),
+            "Whether the result is limited to [outmin, outmax].",
+        )
+        .uniform(),
+        OCTAVES,
+        LACUNARITY,
+        DIMINISH,
+        SEED,
+    ],
+    output: OutputType::Exactly(Type::Float),
+    class,
+    example: r#"{ "version": 1, "name": "leather",
+        "nodes": { "unifiednoise2d": { "type": "unifiednoise2d", "inputs": { "type": "worley", "freq": [8, 6], "outmin": 1, "outmax": 0 } } },
+        "outputs": { "out": { "node": "unifiednoise2d" } } }"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+fn class(inputs: &dyn InputView) -> Behaviour {
+    match (inputs.choice("type"), inputs.flag("clampoutput")) {
+        ("cell", _) => Behaviour::Random { deviation: 0.058 },
+        ("worley", _) if inputs.choice("style") == "solid" => {
+            Behaviour::Random { deviation: 0.058 }
+        }
+        ("worley", _) => Behaviour::Random { deviation: 0.04 },
+        // Half of it is the number at the limit.
+        ("fractal", true) => Behaviour::Random { deviation: 0.5 },
+        // The limits are four standard deviations away.
+        _ => Behaviour::Gaussian {
+            deviation: DEVIATION,
+        },
+    }
+}
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let [texcoord, freq, offset] =
+        ["texcoord", "freq", "offset"].map(|port| lower.bundle(node, port));
+    let position: Vec<Signal> = (0..2)
+        .map(|i| {
+            let scaled = product(lower, &texcoord[i], &freq[i]);
+            sum(lower, &scaled, &offset[i])
+        })
+        .collect();
+    let raw = raw(lower, node, &position);
+    let [low, high] = ["outmin", "outmax"].map(|port| lower.number(node, port));
+    let b = lower.b();
+    let span = b.sub(high, low);
+    let out = raw.scale(b, span).offset(b, low);
+    if !lower.flag(node, "clampoutput") {
+        return vec![out];
+    }
+    let b = lower.b();
+    let (least, most) = (b.min(low, high), b.max(low, high));
+    let clamp = Piecewise::clamp(b, least, most);
+    vec![transfer(lower, &out, &clamp)]
+}
+
+/// The noise that is chosen, before it is remapped.
+fn raw(lower: &mut Lower<'_>, node: &Node, position: &[Signal]) -> Signal {
+    let seed = lower.integer(node, "seed");
+    match lower.choice(node, "type") {
+        "cell" => {
+            let field = cell::filtered(lower, position, seed, 0);
+            field.at(lower, position).with_range([0.0, 1.0])
+        }
+        "worley" => {
+            let worley = Worley {
+                jitter: lower.float(node, "jitter"),
+                solid: lower.choice(node, "style") == "solid",
+                output: Output::First,
+                period: 0,
+                seed,
+            };
+            let farthest = if worley.solid { 1.0 } else { 3.6 };
+            let field = worley::filtered(lower, position, worley);
+            field.at(lower, position).with_range([0.0, farthest])
+        }
+        kind => {
+            let fractal = kind == "fractal";
+            let octaves = if fractal {
+                octaves(lower, node)
+            } else {
+                Octaves {
+                    count: 1,
+                    part: 0.0,
+                    lacunarity: 2.0,
+                    diminish: 1.0,
+                    seed,
+                    period: 0,
+                }
+            };
+            Kernel::Gaussian.report(lower, position, octaves);
+            let (factor, pivot) = if fractal { (0.25, 0.0) } else { (0.125, 0.5) };
+            let extent = factor * EXTENT * octaves.sd();
+            let b = lower.b();
+            let shape = Affine {
+                amplitude: b.f32(factor),
+                pivot: b.f32(pivot),
+            };
+            let signal = Kernel::Gaussian.signal(lower, position, octaves, shape);
+            signal.with_range([pivot - extent, pivot + extent])
+        }
+    }
+}
