@@ -62,6 +62,15 @@ impl Builder {
         }
     }
 
+    /// Room for so many instructions.
+    pub(crate) fn with_capacity(mut self, instructions: usize) -> Self {
+        self.function.insts.reserve(instructions);
+        self.function.types.reserve(instructions);
+        self.function.names.reserve(instructions / 4);
+        self.cons.reserve(instructions, |known| known.hash);
+        self
+    }
+
     /// Shared rules become calls of functions of `library` from here on.
     pub(crate) fn with_library(mut self, library: Library) -> Self {
         self.library = Some(library);

@@ -179,7 +179,7 @@ impl Shelves {
         let reference = rule.function.as_ref().map(|_| {
             self.rules.push(Arc::clone(rule));
             FunctionRef {
-                id: FunctionId(self.rules.len() as u32 - 1 | SHARED),
+                id: FunctionId((self.rules.len() as u32 - 1) | SHARED),
                 results: Arc::clone(&rule.types),
             }
         });

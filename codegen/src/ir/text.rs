@@ -130,7 +130,7 @@ impl Module {
                 f,
                 "{} {} = {value}",
                 if index == 0 { "" } else { "," },
-                Name(&name)
+                Name(name)
             )?;
         }
         f.write_str("\n}\n")

@@ -45,7 +45,10 @@ pub(super) fn graph_function(
         Mode::Local => "The filtered texture, by means, gradients and remainders.",
         Mode::Quad => "The filtered texture, by means, gradients, Hessians and remainders.",
     };
-    let mut lower = Lower::new(compiler, module, Builder::new(name, doc), mode);
+    // A node makes about so many, most of them short-lived constants and products with 0 and 1.
+    let room = 24 * compiler.facts.order.len();
+    let b = Builder::new(name, doc).with_capacity(room);
+    let mut lower = Lower::new(compiler, module, b, mode);
     lower.run();
     let results = lower.results();
     let nonlinear = lower.nonlinear;

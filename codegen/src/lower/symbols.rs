@@ -5,6 +5,7 @@ use crate::ir::Builder;
 use crate::moments::{Signal, Symbol};
 use mipless_graph::{Behaviour, Graph, Input, OutputType, Source, Type};
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 /// A signal carries at most this many symbols; the oldest go private first, so that a graph of
 /// 10,000 nodes stays linear.
@@ -76,20 +77,29 @@ pub(super) struct Carriers {
     counts: FxHashMap<Symbol, u32>,
 }
 
+/// Some symbols, in order.
+type Symbols = SmallVec<[Symbol; 16]>;
+
 /// The symbols that a bundle's signals carry.
-fn carried(bundle: &Bundle) -> Vec<Symbol> {
-    let shared = |signal: &Signal| signal.shared.iter().map(|&(s, _)| s).collect::<Vec<_>>();
-    distinct(bundle.iter().flat_map(shared))
+fn carried(bundle: &Bundle) -> Symbols {
+    distinct(bundle, false)
 }
 
 /// The same with those of their second Hermite polynomials, which a transfer of them carries.
-fn held(bundle: &Bundle) -> Vec<Symbol> {
-    let hermites = bundle.iter().filter_map(|signal| signal.hermite);
-    distinct(hermites.chain(carried(bundle)))
+fn held(bundle: &Bundle) -> Symbols {
+    distinct(bundle, true)
 }
 
-fn distinct(symbols: impl Iterator<Item = Symbol>) -> Vec<Symbol> {
-    let mut all: Vec<Symbol> = symbols.collect();
+fn distinct(bundle: &[Signal], hermites: bool) -> Symbols {
+    let mut all = Symbols::new();
+    for signal in bundle {
+        for &(symbol, _) in &signal.shared {
+            all.push(symbol);
+        }
+        if let Some(symbol) = signal.hermite.filter(|_| hermites) {
+            all.push(symbol);
+        }
+    }
     all.sort_unstable();
     all.dedup();
     all

@@ -1,7 +1,9 @@
 //! Names: identifiers that every target accepts, from arbitrary text, unique in their scope.
 
 use super::reserved::is_reserved;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
+use std::collections::hash_map::Entry;
+use std::hash::BuildHasher;
 
 /// An identifier made of arbitrary text: ASCII letters, digits and single underscores between them,
 /// not beginning with a digit, and not a reserved word of any target.
@@ -61,35 +63,41 @@ pub(super) fn camel(identifier: &str) -> String {
     name
 }
 
-/// The names taken in a scope.
+/// The names taken in a scope, as hashes: a name whose hash is another's counts as taken.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Scope {
     /// For each name, the number that its next namesake gets.
-    taken: FxHashMap<String, u32>,
+    taken: FxHashMap<u64, u32>,
+}
+
+fn hashed(name: &str) -> u64 {
+    FxBuildHasher.hash_one(name)
 }
 
 impl Scope {
     /// Takes `name`, or the first free of `name_2`, `name_3`, ….
     pub(super) fn take(&mut self, name: String) -> String {
-        let Some(next) = self.taken.get_mut(&name) else {
-            self.taken.insert(name.clone(), 2);
-            return name;
+        let next = match self.taken.entry(hashed(&name)) {
+            Entry::Vacant(place) => {
+                place.insert(2);
+                return name;
+            }
+            Entry::Occupied(next) => *next.get(),
         };
-        let mut number = *next;
-        loop {
+        for number in next.. {
             let candidate = format!("{name}_{number}");
-            number += 1;
-            if !self.taken.contains_key(&candidate) {
-                self.taken.insert(name, number);
-                self.taken.insert(candidate.clone(), 2);
+            if let Entry::Vacant(place) = self.taken.entry(hashed(&candidate)) {
+                place.insert(2);
+                self.taken.insert(hashed(&name), number + 1);
                 return candidate;
             }
         }
+        unreachable!("there are more numbers than names")
     }
 
     /// Whether a name is taken.
     pub(super) fn holds(&self, name: &str) -> bool {
-        self.taken.contains_key(name)
+        self.taken.contains_key(&hashed(name))
     }
 }
 

@@ -170,12 +170,11 @@ pub(crate) fn octaves_of(
     }
     let factor = b.f32(factor);
     let amplitude = amplitude.scale(b, factor);
-    // The range alone: nothing of this is built.
-    let range = Signal::constant(b, 0.0)
-        .with_range([-extent, extent])
-        .scale(b, amplitude.mean)
-        .add(b, &pivot)
-        .range;
+    let extent = match b.as_constant(amplitude.mean) {
+        Some(amplitude) => extent * amplitude.abs(),
+        None => f32::INFINITY,
+    };
+    let range = [-extent + pivot.range[0], extent + pivot.range[1]];
     let shape = Affine {
         amplitude: amplitude.mean,
         pivot: pivot.mean,
