@@ -24,6 +24,7 @@
 //! identical in every run.
 
 mod build;
+mod circle;
 mod inline;
 mod library;
 mod op;
