@@ -23,7 +23,7 @@ use arguments::Arguments;
 use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Source, Type};
 use rustc_hash::FxHashMap;
 use std::any::Any;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// The components of a node's output.
@@ -105,7 +105,6 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         fused,
         maps: RefCell::default(),
         gains: RefCell::default(),
-        levels: Cell::new(None),
         library: Library::default(),
     };
     let mut module = Module::default();
@@ -184,8 +183,6 @@ struct Compiler<'a> {
     maps: RefCell<FxHashMap<String, Map>>,
     /// Whether regions of two signals are worth a map, by their shapes.
     gains: RefCell<FxHashMap<u64, bool>>,
-    /// The table of levels that pyramids share, once there is one.
-    levels: Cell<Option<u32>>,
     /// The functions that all functions share.
     library: Library,
 }

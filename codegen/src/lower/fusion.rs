@@ -75,7 +75,6 @@ impl<'a> Compiler<'a> {
             fused: Default::default(),
             maps: Default::default(),
             gains: Default::default(),
-            levels: Default::default(),
             library: self.library.clone(),
         }
     }
@@ -222,7 +221,6 @@ impl Lower<'_> {
                 .insert(index, Arc::clone(&samples));
             samples
         });
-        let levels = self.levels();
         let name = super::identifier(&node.name);
         let function = self.function(&format!("fused {index}"), |module| {
             function(compiler, module, index, entry)
@@ -236,7 +234,7 @@ impl Lower<'_> {
                 };
                 let of = (function.clone(), i);
                 let bounds = (domain, periodic, signal.range);
-                let table = Tabulated::new(self.module, levels, &name, of, bounds, &samples);
+                let table = Tabulated::new(self.module, &name, of, bounds, &samples);
                 self.algebra.transfer(&chain.signal, &table)
             })
             .collect()

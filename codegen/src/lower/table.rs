@@ -110,28 +110,12 @@ impl Lower<'_> {
             let values = points.map(|x| function(x.into())).collect();
             vec![Sampled::new(values, false)]
         })));
-        let levels = self.levels();
         let bounds = (domain, false, range);
-        let table = Tabulated::new(
-            self.module,
-            levels,
-            &identifier(name),
-            (of, 0),
-            bounds,
-            &samples,
-        );
+        let table = Tabulated::new(self.module, &identifier(name), (of, 0), bounds, &samples);
         self.compiler
             .tabulated
             .borrow_mut()
             .insert(key.to_owned(), table.clone());
         table
-    }
-
-    /// The table of levels that pyramids of functions share.
-    pub(super) fn levels(&mut self) -> u32 {
-        let levels = self.compiler.levels.get();
-        let levels = levels.unwrap_or_else(|| Tabulated::levels(self.module));
-        self.compiler.levels.set(Some(levels));
-        levels
     }
 }
