@@ -25,6 +25,7 @@
 
 mod build;
 mod circle;
+mod idle;
 mod inline;
 mod library;
 mod op;
