@@ -37,8 +37,9 @@ static SPEC: NodeSpec = NodeSpec {
             ranks before they are blended; out = mean + Σⱼ aⱼ Tⱼ(Nⱼ) with Tⱼ the inverse of the ranks \
             along the axis aⱼ. The example must tile, and be a texture without large structures. \
             Without a file, 0 everywhere.",
-        statistics: "Each Nⱼ is Gaussian with mean 0 and variance 1. The footprint is taken apart: 2 × 2 parts \
-            of the pixel (3 × 3 for a box filter), and probes along the longer axis. In a part of \
+        statistics: "Each Nⱼ is Gaussian with mean 0 and variance 1. The footprint is taken apart: 3 × 3 parts of \
+            the pixel for a box filter, 2 × 2 for a Gaussian of less than a texel or as large as the \
+            tiles, and probes along the longer axis. In a part of \
             variance v a tile has the mean, gradient and covariance of a pyramid of the Gaussian \
             example; the part has mean Σ wᵢmᵢ + v ∇wᵢ·∇mᵢ, gradient Σ wᵢ∇mᵢ + mᵢ∇wᵢ (whose \
             products are the covariance between the tiles), and Σ wᵢ² Rᵢ beyond the gradient. Parts \
@@ -48,7 +49,7 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "Against dense truth, box footprints of 2² to 128² texels of a 512² example: the \
             local standard deviation is off by at most 0.03 of itself on average where waves are 100 \
             texels long, and by 0.07 where they are 20; the mean to 32² by at most 0.06 of the error of the \
-            nearest mip. Gaussian footprints, round or 8:1: 0.08 and 0.11. Held by `cargo bench -p mipless-tests --bench \
+            nearest mip. Gaussian footprints, round or 8:1: 0.11. Held by `cargo bench -p mipless-tests --bench \
             byexample` and `nodes/tests/picture.rs`. Footprints more than 6 times as long as wide \
             are taken for wider.",
         references: "Heitz & Neyret 2018, *High-Performance By-Example Noise using a Histogram-Preserving \
