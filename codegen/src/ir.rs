@@ -24,8 +24,10 @@
 //! identical in every run.
 
 mod build;
+mod circle;
 mod expand;
 mod function;
+mod idle;
 mod inline;
 mod library;
 mod op;

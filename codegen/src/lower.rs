@@ -31,7 +31,7 @@ use arguments::Arguments;
 use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Picture, Source, Type};
 use rustc_hash::FxHashMap;
 use std::any::Any;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// The components of a node's output.
@@ -201,8 +201,6 @@ struct Compiler<'a> {
     /// Whether regions are worth more than their closed form, by their shapes: of two signals 1 for a
     /// map, of one signal the parts on each side of its middle; 0 for no.
     gains: RefCell<FxHashMap<shape::Shape, usize>>,
-    /// The table of levels that pyramids share, once there is one.
-    levels: Cell<Option<u32>>,
     /// The functions that all functions share.
     library: Library,
 }
@@ -225,7 +223,6 @@ impl<'a> Compiler<'a> {
             fused: RefCell::default(),
             maps: RefCell::default(),
             gains: RefCell::default(),
-            levels: Cell::new(None),
             library: Library::default(),
         }
     }

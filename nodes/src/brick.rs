@@ -29,11 +29,10 @@ static SPEC: NodeSpec = NodeSpec {
             [0, 1] for each brick and half of the joints around it. Joints and bevels are measured in rows and have the same \
             width in texture space in both directions.",
         statistics: "A sum over the bricks of a unit cell of products of two periodic pulses, one a \
-            coordinate. Given the part of the footprint that both coordinates share, they are \
-            independent Gaussians and each pulse has its closed form (a sum over its edges up to \
-            σ = 0.2 periods, three damped harmonics beyond); the shared part is integrated by the \
-            trapezoid rule, one node for a footprint along the axes and 31 for 8:1 at 45 degrees. \
-            Without a bevel the variance is P(1 − P); with one, that of a pulse with the same mean \
+            coordinate. Each pulse has its closed form (a sum over its edges up to \
+            σ = 0.11 periods, six damped harmonics beyond). Up to a correlation of the coordinates of 1/2 the \
+            mean of a product is four terms of Mehler's series; of a larger one a part that both \
+            share is integrated by the trapezoid rule, 21 nodes for 8:1 at 45 degrees. Without a bevel the variance is P(1 − P); with one, that of a pulse with the same mean \
             square, approximate. Random numbers are weighted by the share of the footprint that \
             each brick holds, and fade to their mean, 1/2, where the footprint covers many unit \
             cells: from 0.5 cells of √det Σ, or 1.1 cells along a coordinate after the shared part. Of varying parameters the means are used.",
@@ -43,7 +42,7 @@ static SPEC: NodeSpec = NodeSpec {
             0.06. With a bevel the standard \
             deviation is within 0.03. Held by `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
-            Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. Names of \
+            Mehler 1866. Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. Names of \
             bonds as masons use them.",
     },
     inputs: &[

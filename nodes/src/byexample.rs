@@ -40,8 +40,9 @@ static SPEC: NodeSpec = NodeSpec {
             ranks before they are blended; out = mean + Σⱼ aⱼ Tⱼ(Nⱼ) with Tⱼ the inverse of the ranks \
             along the axis aⱼ. The example must tile, and be a texture without large structures. \
             Without a file, 0 everywhere.",
-        statistics: "Each Nⱼ is Gaussian with mean 0 and variance 1. The footprint is taken apart: 2 × 2 parts \
-            of the pixel (3 × 3 for a box filter), and probes along the longer axis. In a part of \
+        statistics: "Each Nⱼ is Gaussian with mean 0 and variance 1. The footprint is taken apart: 3 × 3 parts of \
+            the pixel for a box filter, 2 × 2 for a Gaussian of less than a texel or as large as the \
+            tiles, and probes along the longer axis. In a part of \
             variance v a tile has the mean, gradient and covariance of a pyramid of the Gaussian \
             example; the part has mean Σ wᵢmᵢ + v ∇wᵢ·∇mᵢ, gradient Σ wᵢ∇mᵢ + mᵢ∇wᵢ (whose \
             products are the covariance between the tiles), and Σ wᵢ² Rᵢ beyond the gradient. Parts \

@@ -20,16 +20,15 @@ static SPEC: NodeSpec = NodeSpec {
         computes: "out = color2 where ⌊u⌋ + ⌊v⌋ is even, else color1, with (u, v) = texcoord · uvtiling \
             − uvoffset. The square at the origin is color2, as in MaterialX.",
         statistics: "The parity is 1 − X − Y + 2XY with X and Y square waves of one coordinate each. \
-            Given the part of the footprint that both coordinates share, they are independent \
-            Gaussians and each wave has its closed form (a sum of Φ over the edges up to σ = 0.4 \
-            squares, three damped harmonics beyond); the shared part is integrated by the \
-            trapezoid rule, one node for a footprint along the axes and 31 for 8:1 at 45 degrees. \
-            Variance P(1 − P). Over a large footprint the mean is (color1 + color2)/2.",
+            Each wave has its closed form (a sum of Φ over the edges up to σ = 0.22 \
+            squares, six damped harmonics beyond). Up to a correlation of the coordinates of 1/2 the \
+            mean of a product is four terms of Mehler's series; of a larger one a part that both \
+            share is integrated by the trapezoid rule, 21 nodes for 8:1 at 45 degrees. Variance P(1 − P). Over a large footprint the mean is (color1 + color2)/2.",
         accuracy: "The mean is within 1e-5 of the difference of the colours for footprints along the \
             axes and within 2e-3 for rotated ones up to 10:1; longer ones are blurred across to \
             10:1. Held by `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
-            Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. MaterialX \
+            Mehler 1866. Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. MaterialX \
             1.39, node `checkerboard` of its standard library.",
     },
     inputs: &[

@@ -47,14 +47,14 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "Filtered mean, RMS over positions, in standard deviations of the noise: within 0.007 \
             up to footprints of half a cell, 0.024 beyond, and 0.016 for footprints of 8:1 at any \
             angle, held by `nodes/tests/noise.rs` against dense integration. At most 0.02 is \
-            dropped beyond the window; an octave that keeps less than 0.25 % of its variance fades \
-            out, gone at 0.07 %, what fades joining the remainder. The remainder is an average over \
+            dropped beyond the window; an octave that keeps less than 0.08 % of the whole noise's variance \
+            fades out, gone at 0.04 %, what fades joining the remainder. The remainder is an average over \
             positions: the variance of the unfiltered noise over all lattices is 0.24 of its mean at \
             a lattice point and 1.67 at the most; of the noise filtered by 0.2 cells 0.49 to 1.67, by \
             a third of a cell 0.83 to 1.36, by half a cell 0.96 to 1.09. Cost, in kernels: 3×3 \
             unfiltered; filtered, four columns across the footprint's longer side by three rows up \
             to 0.12 cells, four up to 0.78, then 4.6 √(0.149 + σ²) up to 32, none once it has \
-            faded (1.24 cells, if round). `quintic`: the fit is 0.023 standard deviations from \
+            faded (1.37 cells, if round). `quintic`: the fit is 0.023 standard deviations from \
             the noise; filtered mean within 0.035 at any round footprint and within 0.025 at 8:1, \
             at any angle (`nodes/tests/perlin.rs`); its remainder is that of random lattices, while the \
             noise is 0 at every lattice point; 2×2 kernels up to 0.1 cells, then from 3×3 on, each \

@@ -14,11 +14,11 @@ static SPEC: NodeSpec = NodeSpec {
     summary: "1 over a share of every unit, else 0.",
     doc: Doc {
         computes: "out = 1 where the fraction of in is below width, else 0, for each component.",
-        statistics: "For σ ≤ 0.2 periods a sum of Φ over the edges within reach, beyond it three harmonics \
+        statistics: "For σ ≤ 0.11 periods Φ at the nearest two edges, beyond it six harmonics \
             of the Fourier series, damped by e^{−2π²k²v}; the variance is P(1 − P). Exact for a \
             Gaussian. Over a large footprint the mean goes to width. Of a varying width the mean \
             is used.",
-        accuracy: "For a Gaussian input the mean is within 2e-6, the remainder’s standard deviation \
+        accuracy: "For a Gaussian input the mean is within 5e-6, the remainder’s standard deviation \
             within 2e-3. Held by `codegen/src/moments/tests.rs` against dense numerical \
             integration in f64.",
         references: "The characteristic function of the normal distribution, in *Abramowitz & Stegun* \

@@ -18,8 +18,8 @@ static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "out = 1 where the fraction of (u cos r + v sin r) · frequency is below width, else \
             0, with r = rotate. With a rotation of 0 the stripes run along v.",
-        statistics: "A square wave of a Gaussian phase in closed form: a sum of Φ over five edges up to a \
-            standard deviation of 0.2 periods, three damped Fourier harmonics beyond; variance \
+        statistics: "A square wave of a Gaussian phase in closed form: Φ at the nearest two edges up to a \
+            standard deviation of 0.11 periods, six damped Fourier harmonics beyond; variance \
             P(1 − P). Exact for a position. Over a large footprint the mean is width. Of a \
             varying width the mean is used.",
         accuracy: "For a Gaussian phase the mean is within 5e-6. Held by `codegen/src/moments/tests.rs` \

@@ -75,9 +75,13 @@ impl Function {
 }
 
 impl Module {
-    /// The module without the functions that the entry does not reach and the tables that they do
-    /// not read, each name used once.
-    pub fn pruned(mut self) -> Self {
+    /// The module without the state of folds that nothing reads, the functions that the entry does
+    /// not reach and the tables that they do not read, each name used once.
+    pub fn pruned(self) -> Self {
+        self.without_idle_state().reached()
+    }
+
+    fn reached(mut self) -> Self {
         let mut live = vec![false; self.functions.len()];
         if let Some(entry) = live.last_mut() {
             *entry = true;

@@ -221,7 +221,6 @@ impl Lower<'_> {
                 .insert(index, Arc::clone(&samples));
             samples
         });
-        let levels = self.levels();
         let name = super::identifier(&node.name);
         let function = self.function(&format!("fused {index}"), |module| {
             function(compiler, module, index, entry)
@@ -238,7 +237,7 @@ impl Lower<'_> {
                 };
                 let of = (function.clone(), branch.clone(), i);
                 let bounds = (domain, periodic, signal.range);
-                let table = Tabulated::new(self.module, levels, &name, of, bounds, &samples);
+                let table = Tabulated::new(self.module, &name, of, bounds, &samples);
                 self.algebra.transfer(&chain.signal, &table)
             })
             .collect()

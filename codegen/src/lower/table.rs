@@ -111,11 +111,9 @@ impl Lower<'_> {
             let values = points.map(|x| function(x.into())).collect();
             vec![Sampled::new(values, false)]
         })));
-        let levels = self.levels();
         let bounds = (domain, false, range);
         let table = Tabulated::new(
             self.module,
-            levels,
             &identifier(name),
             (of, branch, 0),
             bounds,
@@ -126,13 +124,5 @@ impl Lower<'_> {
             .borrow_mut()
             .insert(key.to_owned(), table.clone());
         table
-    }
-
-    /// The table of levels that pyramids of functions share.
-    pub(super) fn levels(&mut self) -> u32 {
-        let levels = self.compiler.levels.get();
-        let levels = levels.unwrap_or_else(|| Tabulated::levels(self.module));
-        self.compiler.levels.set(Some(levels));
-        levels
     }
 }

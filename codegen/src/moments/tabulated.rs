@@ -230,28 +230,13 @@ pub struct Tabulated {
     domain: [f32; 2],
     periodic: bool,
     range: [f32; 2],
-    /// The table of texel counts and offsets of the levels.
-    levels: u32,
     tables: [u32; 5],
 }
 
 impl Tabulated {
-    /// The table of texel counts and offsets of the levels, which all pyramids share.
-    pub(crate) fn levels(module: &mut Module) -> u32 {
-        let mut layout = Vec::new();
-        let mut total = 0;
-        for level in 0..LEVELS {
-            layout.extend([texels(level) as f32, total as f32]);
-            total += texels(level);
-        }
-        module.table("pyramid_levels", layout)
-    }
-
-    /// `levels` is the table that [`Self::levels`] made; the
-    /// function takes a number and gives the components; `range` bounds this one.
+    /// `function` takes a number and gives the components; `range` bounds this one.
     pub(crate) fn new(
         module: &mut Module,
-        levels: u32,
         name: &str,
         (function, branch, component): (FunctionRef, Branch, usize),
         (domain, periodic, range): ([f32; 2], bool, [f32; 2]),
@@ -272,7 +257,6 @@ impl Tabulated {
             domain,
             periodic,
             range,
-            levels,
             tables,
         }
     }
@@ -321,25 +305,32 @@ impl Tabulated {
         let mix = b.clamp(mix, 0.0, 1.0);
         let row = b.trunc_i(level);
         let row = b.cast_u(row);
-        let two = b.u32(2);
-        let row = b.mul_u(row, two);
-        let texels = [0, 1].map(|next| {
-            let step = b.u32(2 * next);
-            let row = b.add_u(row, step);
-            let one = b.u32(1);
-            let second = b.add_u(row, one);
-            let count = b.load(self.levels, row);
-            let offset = b.load(self.levels, second);
-            let last = b.offset(count, -1.0);
+        // A level of n + 1 texels, n = SAMPLES/4 halved every other level, starts after those before:
+        // at SAMPLES − 4n + l, and at n more where l is odd.
+        let (one, four) = (b.u32(1), b.u32(4));
+        let halved = b.shr_u(row, one);
+        let odd = b.and_u(row, one);
+        let quarter = b.u32((SAMPLES / 4) as u32);
+        let fine = b.shr_u(quarter, halved);
+        let (all, own) = (b.u32(SAMPLES as u32), b.mul_u(fine, four));
+        let before = b.sub_u(all, own);
+        let before = b.add_u(before, row);
+        let other = b.mul_u(odd, fine);
+        let first = b.add_u(before, other);
+        let next = b.add_u(first, fine);
+        let next = b.add_u(next, one);
+        let coarse = b.shr_u(fine, odd);
+        let texels = [(fine, first), (coarse, next)].map(|(last, first)| {
+            let last = b.float_u(last);
             let at = b.mul(u, last);
             let left = b.floor(at);
             // The last interval includes its end.
             let limit = b.offset(last, -1.0);
             let left = b.min(left, limit);
             let share = b.sub(at, left);
-            let index = b.add(left, offset);
-            let index = b.trunc_i(index);
-            (b.cast_u(index), share)
+            let left = b.trunc_i(left);
+            let left = b.cast_u(left);
+            (b.add_u(first, left), share)
         });
         let finest = b.f32(FINEST as f32);
         let below = b.lt(s, finest);
@@ -414,6 +405,17 @@ mod tests {
     use super::*;
 
     type Function = fn(f64) -> f64;
+
+    #[test]
+    fn levels_start_where_the_others_end() {
+        let mut first = 0;
+        for level in 0..LEVELS {
+            let last = SAMPLES / 4 >> (level / 2);
+            assert_eq!(texels(level), last + 1);
+            assert_eq!(first, SAMPLES - 4 * last + level + level % 2 * last);
+            first += texels(level);
+        }
+    }
 
     #[test]
     fn a_pyramid_states_its_error_and_stays_small() {

@@ -13,8 +13,9 @@ use smallvec::smallvec;
 
 /// 1 where the fraction of x is below `width`, else 0; x in periods.
 ///
-/// For σ ≤ 0.2 periods the sum over the five edges within reach (error 3e-7), beyond it three
-/// harmonics of the Fourier series, damped by e^{−2π²k²v} (error 2e-6). Exact for a Gaussian.
+/// For σ ≤ 0.11 periods the nearest rising and the nearest falling edge (the others are half a period
+/// away: 3e-6), beyond it six harmonics of the Fourier series, damped by e^{−2π²k²v} (error 1e-6).
+/// Exact for a Gaussian.
 #[derive(Clone, Copy, Debug)]
 pub struct SquareWave {
     /// The share of a period that is 1, in [0, 1].
@@ -24,10 +25,23 @@ pub struct SquareWave {
 /// Where the two series meet, in periods.
 const CROSSOVER: f32 = 0.2;
 
+/// The same for a square wave, of which two edges and six harmonics are summed.
+const SQUARE_CROSSOVER: f32 = 0.11;
+
+/// How many harmonics of a square wave.
+const HARMONICS: usize = 6;
+
 /// x less the whole number below it.
 fn fraction(b: &mut Builder, x: Value) -> Value {
     let whole = b.floor(x);
     b.sub(x, whole)
+}
+
+/// The nearest whole number, and x less that: in [−½, ½].
+fn nearest(b: &mut Builder, x: Value) -> [Value; 2] {
+    let raised = b.offset(x, 0.5);
+    let whole = b.floor(raised);
+    [whole, b.sub(x, whole)]
 }
 
 impl SquareWave {
@@ -36,17 +50,11 @@ impl SquareWave {
         let inverse2 = b.square(inverse);
         let inverse3 = b.mul(inverse2, inverse);
         let falling = b.sub(u, self.width);
-        let mut out = [b.f32(1.0), b.f32(0.0), b.f32(0.0), b.f32(0.0)];
-        // Rising edges at 0 and 1, falling ones at width − 1, width and width + 1; the rising edge
-        // at −1 is the 1 that the sum starts from.
-        for (from, shift, sign) in [
-            (u, 0.0, 1.0),
-            (u, -1.0, 1.0),
-            (falling, 1.0, -1.0),
-            (falling, 0.0, -1.0),
-            (falling, -1.0, -1.0),
-        ] {
-            let distance = b.offset(from, shift);
+        let ([rises, up], [falls, down]) = (nearest(b, u), nearest(b, falling));
+        // The wave is ⌊u⌋ − ⌊u − width⌋, and ⌊x⌋ next to a whole number is that or one less.
+        let zero = b.f32(0.0);
+        let mut out = [b.sub(rises, falls), zero, zero, zero];
+        for (distance, sign) in [(up, 1.0), (down, -1.0)] {
             let n = Normal::at(b, distance, inverse);
             let density = b.mul(n.density, inverse);
             let curved = b.mul(n.z, n.density);
@@ -71,41 +79,40 @@ impl SquareWave {
     /// The damped Fourier series: mean, slope, curvature, third.
     fn harmonics(&self, b: &mut Builder, u: Value, variance: Value) -> [Value; 4] {
         use std::f32::consts::{PI, TAU};
-        let limit = b.f32(4.0);
-        let v = b.min(variance, limit);
         let half = b.scale(self.width, 0.5);
         let centred = b.sub(u, half);
+        let [_, turns] = nearest(b, centred);
+        let place = b.circle(turns);
+        let place = b.multiples::<HARMONICS>(place);
+        // sin(kπ width).
+        let edge = b.circle(half);
+        let edge = b.multiples::<HARMONICS>(edge);
+        // qᵏ² from q = e^{−2π²v}: each is the one before times q²ᵏ⁺¹.
+        let exponent = b.scale(variance, -2.0 * PI * PI);
+        let exponent = b.clamp(exponent, -40.0, 0.0);
+        let first = b.exp(exponent);
+        let square = b.square(first);
+        let (mut damping, mut step) = (first, b.mul(square, first));
         let zero = b.f32(0.0);
         let mut out = [self.width, zero, zero, zero];
-        for k in 1..=3 {
+        for (k, ([cosine, sine], [_, edge])) in (1..).zip(place.into_iter().zip(edge)) {
             let k = k as f32;
-            let angle = b.scale(self.width, PI * k);
-            let amplitude = b.sin(angle);
-            let exponent = b.scale(v, -2.0 * PI * PI * k * k);
-            let exponent = b.clamp(exponent, -80.0, 0.0);
-            let damping = b.exp(exponent);
-            let amplitude = b.mul(amplitude, damping);
-            let amplitude = b.scale(amplitude, 2.0 / (PI * k));
-            let turns = b.scale(centred, k);
-            let rounded = b.offset(turns, 0.5);
-            let whole = b.floor(rounded);
-            let turns = b.sub(turns, whole);
-            let angle = b.scale(turns, TAU);
-            let (sine, cosine) = (b.sin(angle), b.cos(angle));
+            let amplitude = b.mul(edge, damping);
             let w = TAU * k;
-            for (i, (trig, factor)) in [
-                (cosine, 1.0),
-                (sine, -w),
-                (cosine, -w * w),
-                (sine, w * w * w),
-            ]
-            .into_iter()
-            .enumerate()
-            {
-                let part = b.mul(amplitude, trig);
+            let of = 2.0 / (PI * k);
+            let along = b.mul(amplitude, cosine);
+            let across = b.mul(amplitude, sine);
+            for (sum, (part, factor)) in out.iter_mut().zip([
+                (along, of),
+                (across, -w * of),
+                (along, -w * w * of),
+                (across, w * w * w * of),
+            ]) {
                 let part = b.scale(part, factor);
-                out[i] = b.add(out[i], part);
+                *sum = b.add(*sum, part);
             }
+            damping = b.mul(damping, step);
+            step = b.mul(step, square);
         }
         out
     }
@@ -123,7 +130,7 @@ impl Transfer for SquareWave {
         let u = fraction(b, x.mean);
         let edges = self.edges(b, u, x.inverse_sd);
         let harmonics = self.harmonics(b, u, x.variance);
-        let crossover = b.f32(CROSSOVER);
+        let crossover = b.f32(SQUARE_CROSSOVER);
         let narrow = b.lt(x.sd, crossover);
         let pick = |b: &mut Builder, i: usize| b.select(narrow, edges[i], harmonics[i]);
         let mean = pick(b, 0);

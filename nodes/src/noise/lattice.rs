@@ -67,28 +67,37 @@ impl Octaves {
     /// finer than the one before: where one is gone, all that follow are. With y the smaller
     /// eigenvalue of Σ/a² a footprint leaves no more than (1 + y)⁻³ of the variance.
     fn left(self, b: &mut Builder, minor: Value) -> Left {
-        let limit = WIDTH * WIDTH * (filtered::FADE[0].powf(-1.0 / 3.0) - 1.0);
         let (none, one, zero) = (b.u32(0), b.u32(1), b.f32(0.0));
         let mut left = Left {
             count: none,
             last: none,
             gone: zero,
         };
-        for octave in 0..=self.count as i32 {
-            let whole = octave < self.count as i32;
-            let share = if whole { 1.0 } else { self.part };
-            if share == 0.0 {
-                continue;
-            }
-            let limit = b.f32(limit / self.lacunarity.powi(2 * octave));
+        let total = self.sd().powi(2);
+        let shares = (0..self.count).map(|_| 1.0);
+        let shares = shares.chain((self.part > 0.0).then_some(self.part));
+        let octaves: Vec<[f32; 2]> = (0..)
+            .zip(shares)
+            .map(|(k, share)| {
+                let energy = share * share * self.diminish.powi(2 * k);
+                let weight = (energy / total).max(filtered::LEAST_SHARE);
+                let limit = (weight / filtered::FADE[0]).cbrt() - 1.0;
+                let limit = WIDTH * WIDTH * limit / self.lacunarity.powi(2 * k);
+                [limit, energy]
+            })
+            .collect();
+        for (k, &[_, energy]) in octaves.iter().enumerate() {
+            // Where amplitudes grow, a later one may be left longer.
+            let limit = octaves[k..].iter().map(|o| o[0]).fold(0.0, f32::max);
+            let limit = b.f32(limit);
             let is_left = b.lt(minor, limit);
             let step = b.select(is_left, one, none);
-            if whole {
+            if k < self.count as usize {
                 left.count = b.add_u(left.count, step);
             } else {
                 left.last = step;
             }
-            let energy = b.f32(share * share * self.diminish.powi(2 * octave));
+            let energy = b.f32(energy);
             let energy = b.select(is_left, zero, energy);
             left.gone = b.add(left.gone, energy);
         }
@@ -221,7 +230,8 @@ pub(crate) fn filtered(
         ..
     } = octaves;
     let key = format!(
-        "lattice {mode:?} {lacunarity} {diminish} {}",
+        "lattice {mode:?} {lacunarity} {diminish} {} {}",
+        octaves.sd(),
         octaves.tiles()
     );
     let octave = lower.function(&key, |module| match mode {

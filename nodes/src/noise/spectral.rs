@@ -83,98 +83,153 @@ fn build(module: &mut Module, mode: Mode, waves: &[Wave]) -> FunctionRef {
         b.param_f32("s_yy"),
     ];
     let zero = b.f32(0.0);
-    let mut sums = [zero; 7];
-    // E[M²] and E[∇M ∇Mᵀ].
-    let (mut left, mut slopes) = (zero, [zero; 3]);
+    let mut sums = [zero; 6];
+    let mut left = Energy::none(&mut b);
     for wave in waves {
-        let amplitude = wave.amplitude;
-        let [nx, ny] = wave.vector;
-        let (ix, iy, mask) = (b.i32(nx), b.i32(ny), b.i32(GRID - 1));
-        let (cx, cy) = (b.mul_i(cell_x, ix), b.mul_i(cell_y, iy));
-        let whole = b.add_i(cx, cy);
-        let whole = b.and_i(whole, mask);
-        let whole = b.float_i(whole);
-        let whole = b.scale(whole, 1.0 / GRID as f32);
-        let f = [nx as f32 / GRID as f32, ny as f32 / GRID as f32];
-        let (fx, fy) = (b.f32(f[0]), b.f32(f[1]));
-        let turns = b.dot(&[fx, fy], &[x, y]);
-        let turns = b.add(turns, whole);
-        let turns = b.offset(turns, wave.phase);
-        let rounded = b.offset(turns, 0.5);
-        let floor = b.floor(rounded);
-        let turns = b.sub(turns, floor);
-        let angle = b.scale(turns, TAU);
-        let (mut cosine, mut sine) = (b.cos(angle), b.sin(angle));
+        let turns = turns(&mut b, wave, [cell_x, cell_y], [x, y]);
+        let f = wave.vector.map(|n| n as f32 / GRID as f32);
         let w = f.map(|f| f * TAU);
+        let [mut cosine, mut sine] = if mode == Mode::Point {
+            let angle = b.scale(turns, TAU);
+            [b.cos(angle), zero]
+        } else {
+            b.circle(turns)
+        };
+        let mut amplitude = wave.amplitude;
         if mode.filters() {
-            let factors = [w[0] * w[0], 2.0 * w[0] * w[1], w[1] * w[1]].map(|f| b.f32(f));
-            let q = b.dot(&factors, &covariance);
-            // Beyond, nothing is left, and squares would have no normal numbers.
-            let q = b.clamp(q, 0.0, 60.0);
-            let half = b.scale(q, -0.5);
-            let damping = b.exp(half);
-            cosine = b.mul(cosine, damping);
-            sine = b.mul(sine, damping);
-            let rest = remainder(&mut b, mode, q, damping);
-            let power = 0.5 * amplitude * amplitude;
-            let rest = b.scale(rest, power);
-            sums[6] = b.add(sums[6], rest);
-            if mode == Mode::Local {
-                let energy = b.square(damping);
-                let energy = b.scale(energy, power);
-                left = b.add(left, energy);
-                for (sum, factor) in
-                    (slopes.iter_mut()).zip([w[0] * w[0], w[0] * w[1], w[1] * w[1]])
-                {
-                    let slope = b.scale(energy, factor);
-                    *sum = b.add(*sum, slope);
-                }
-            }
+            // −q/2. Beyond −30 nothing is left, and squares would have no normal numbers.
+            let factors = [-0.5 * w[0] * w[0], -w[0] * w[1], -0.5 * w[1] * w[1]];
+            let factors = factors.map(|f| b.f32(f));
+            let exponent = b.dot(&factors, &covariance);
+            let least = b.f32(-30.0);
+            let exponent = b.max(exponent, least);
+            let damping = b.exp(exponent);
+            let damped = b.scale(damping, amplitude);
+            left.add(&mut b, mode, damped, exponent);
+            cosine = b.mul(cosine, damped);
+            sine = b.mul(sine, damped);
+            amplitude = 1.0;
         }
+        // Derivatives by turns: these numbers are read for the phase already.
         let parts = [
             (cosine, 1.0),
-            (sine, -w[0]),
-            (sine, -w[1]),
-            (cosine, -w[0] * w[0]),
-            (cosine, -w[0] * w[1]),
-            (cosine, -w[1] * w[1]),
+            (sine, f[0]),
+            (sine, f[1]),
+            (cosine, f[0] * f[0]),
+            (cosine, f[0] * f[1]),
+            (cosine, f[1] * f[1]),
         ];
         for (sum, (wave, factor)) in sums.iter_mut().zip(parts) {
             let part = b.scale(wave, factor * amplitude);
             *sum = b.add(*sum, part);
         }
     }
-    if mode == Mode::Local {
-        sums[6] = localized(&mut b, sums[6], sums[0], left, slopes, covariance);
+    for (sum, factor) in sums[1..]
+        .iter_mut()
+        .zip([-TAU, -TAU, -TAU * TAU, -TAU * TAU, -TAU * TAU])
+    {
+        *sum = b.scale(*sum, factor);
     }
-    for (name, sum) in PARTS.into_iter().zip(sums) {
+    let energy: f32 = waves.iter().map(|w| 0.5 * w.amplitude * w.amplitude).sum();
+    let rest = left.removed(&mut b, mode, energy, sums[0], covariance);
+    for (name, sum) in PARTS.into_iter().zip(sums.into_iter().chain([rest])) {
         b.result(name, sum);
     }
     b.finish(module)
 }
 
-/// The share of a wave's variance that the filter removes beyond what the mode carries: 1 − e^{−q}
-/// less the terms e^{−q} qᵏ/k! that it does. Below 2e-7 the difference is rounding.
-fn remainder(b: &mut Builder, mode: Mode, q: Value, damping: Value) -> Value {
-    let (one, zero) = (b.f32(1.0), b.f32(0.0));
-    let energy = b.square(damping);
-    let lost = b.sub(one, energy);
-    let first = b.mul(energy, q);
-    let second = b.mul(first, q);
-    let second = b.scale(second, 0.5);
-    match mode {
-        Mode::Ensemble => lost,
-        Mode::Local => {
-            let left = b.sub(lost, first);
-            let left = b.offset(left, -2e-7);
-            b.max(left, second)
+/// The phase of a wave in turns, in [−½, ½].
+fn turns(b: &mut Builder, wave: &Wave, [cell_x, cell_y]: [Value; 2], place: [Value; 2]) -> Value {
+    let [nx, ny] = wave.vector;
+    let (ix, iy, mask) = (b.i32(nx), b.i32(ny), b.i32(GRID - 1));
+    let (cx, cy) = (b.mul_i(cell_x, ix), b.mul_i(cell_y, iy));
+    let whole = b.add_i(cx, cy);
+    let whole = b.and_i(whole, mask);
+    let whole = b.float_i(whole);
+    let whole = b.scale(whole, 1.0 / GRID as f32);
+    let f = [nx, ny].map(|n| b.f32(n as f32 / GRID as f32));
+    let turns = b.dot(&f, &place);
+    let turns = b.add(turns, whole);
+    let turns = b.offset(turns, wave.phase);
+    let rounded = b.offset(turns, 0.5);
+    let floor = b.floor(rounded);
+    b.sub(turns, floor)
+}
+
+/// Sums over the waves of what the filter leaves of their energies e = a² e^{−q}/2.
+struct Energy {
+    /// Σ 2e.
+    all: Value,
+    /// Σ −eq.
+    first: Value,
+    /// Σ eq²/2.
+    second: Value,
+}
+
+/// Below this a difference of shares of a variance is rounding.
+const ROUNDING: f32 = 1e-6;
+
+impl Energy {
+    fn none(b: &mut Builder) -> Self {
+        let zero = b.f32(0.0);
+        Self {
+            all: zero,
+            first: zero,
+            second: zero,
         }
-        Mode::Quad => {
-            let left = b.sub(lost, first);
-            let left = b.sub(left, second);
-            let left = b.offset(left, -2e-7);
-            b.max(left, zero)
+    }
+
+    /// One more wave: its amplitude under the filter and −q/2.
+    fn add(&mut self, b: &mut Builder, mode: Mode, damped: Value, exponent: Value) {
+        let energy = b.square(damped);
+        self.all = b.add(self.all, energy);
+        let part = b.mul(energy, exponent);
+        self.first = b.add(self.first, part);
+        if mode == Mode::Quad {
+            let part = b.mul(part, exponent);
+            self.second = b.add(self.second, part);
         }
-        Mode::Point | Mode::Naive => zero,
+    }
+
+    /// The variance that the filter removes beyond what the mode carries: Σ a²/2 − e less the terms
+    /// e qᵏ/k! that it does.
+    fn removed(
+        &self,
+        b: &mut Builder,
+        mode: Mode,
+        whole: f32,
+        mean: Value,
+        covariance: [Value; 3],
+    ) -> Value {
+        let (zero, whole) = (b.f32(0.0), b.f32(whole));
+        let left = b.scale(self.all, 0.5);
+        let lost = b.sub(whole, left);
+        match mode {
+            Mode::Point | Mode::Naive => zero,
+            Mode::Ensemble => b.max(lost, zero),
+            Mode::Quad => {
+                let lost = b.add(lost, self.first);
+                let lost = b.sub(lost, self.second);
+                let lost = b.offset(lost, -ROUNDING);
+                b.max(lost, zero)
+            }
+            Mode::Local => {
+                let lost = b.add(lost, self.first);
+                let lost = b.offset(lost, -ROUNDING);
+                // Σ eq²/2 ≥ (Σ eq)²/(2 Σ e), which rounding does not reach.
+                let tiny = b.f32(1e-6);
+                let divisor = b.max(self.all, tiny);
+                let square = b.square(self.first);
+                let least = b.div(square, divisor);
+                let rest = b.max(lost, least);
+                // E[∇M ∇Mᵀ] as if directions were even, which they are until the filter takes some.
+                let [xx, xy, yy] = covariance;
+                let trace = b.add(xx, yy);
+                let trace = b.offset(trace, 1e-20);
+                let slope = b.div(self.first, trace);
+                let slope = b.neg(slope);
+                localized(b, rest, mean, left, [slope, zero, slope], [xx, xy, yy])
+            }
+        }
     }
 }

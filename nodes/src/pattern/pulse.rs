@@ -28,7 +28,10 @@ pub(crate) struct Axis {
 }
 
 /// Where the two series meet, in parts.
-const CROSSOVER: f32 = 0.2;
+const CROSSOVER: f32 = 0.11;
+
+/// How many harmonics.
+const HARMONICS: usize = 6;
 
 /// A live ramp is at least this wide, and at least 0.02 σ: its hinges then keep their digits.
 const NARROWEST: f32 = 1e-4;
@@ -60,63 +63,50 @@ impl Pulse {
         b.clamp(share, 0.0, 1.0)
     }
 
-    /// The mean over a Gaussian, and its first and second derivative by the coordinate's mean: edges
-    /// one by one up to σ = 0.2 parts (those left out are beyond 5 σ), three damped harmonics beyond
-    /// (those left out are below 1e-6).
-    pub(crate) fn moments(&self, b: &mut Builder, axis: Axis) -> [Value; 3] {
+    /// The mean over a Gaussian, and its first three derivatives by the coordinate's mean, each times
+    /// as many σ: edges one by one up to σ = 0.11 parts (those left out are half a part away, beyond
+    /// 4.5 σ: 3e-6), six damped harmonics beyond (those left out are below 1e-6).
+    pub(crate) fn moments(&self, b: &mut Builder, axis: Axis) -> [Value; 4] {
         let [signed, distance] = self.folded(b, axis.mean);
         let sd = b.scale(axis.sd, self.repeat);
         let near = self.edges(b, distance, sd);
         let far = self.harmonics(b, distance, sd);
         let crossover = b.f32(CROSSOVER);
         let narrow = b.lt(sd, crossover);
-        let mut out = [0, 1, 2].map(|i| b.select(narrow, near[i], far[i]));
+        let mut out = [0, 1, 2, 3].map(|i| b.select(narrow, near[i], far[i]));
         out[0] = b.clamp(out[0], 0.0, 1.0);
         // The distance is the coordinate or its negative.
-        let zero = b.f32(0.0);
+        let (zero, one, minus) = (b.f32(0.0), b.f32(1.0), b.f32(-1.0));
         let left = b.lt(signed, zero);
-        let negative = b.neg(out[1]);
-        out[1] = b.select(left, negative, out[1]);
-        out[1] = b.scale(out[1], self.repeat);
-        out[2] = b.scale(out[2], self.repeat * self.repeat);
-        out
-    }
-
-    /// The edges at −1 + h, −h, h, 1 − h and 1 + h, seen from a distance in [0, ½]. The rising edge
-    /// at −1 − h is the 1 that the sum starts from.
-    fn edges(&self, b: &mut Builder, distance: Value, sd: Value) -> [Value; 3] {
-        let one = b.f32(1.0);
-        let inverse = b.div(one, sd);
-        let (below, above) = (b.sub(distance, self.half), b.add(distance, self.half));
-        let mut out = [one, b.f32(0.0), b.f32(0.0)];
-        for (from, shift, rises) in [
-            (below, 1.0, false),
-            (above, 0.0, true),
-            (below, 0.0, false),
-            (above, -1.0, true),
-            (below, -1.0, false),
-        ] {
-            let from = b.offset(from, shift);
-            let edge = self.edge(b, from, sd, inverse);
-            for (sum, part) in out.iter_mut().zip(edge) {
-                *sum = if rises {
-                    b.add(*sum, part)
-                } else {
-                    b.sub(*sum, part)
-                };
-            }
+        let sign = b.select(left, minus, one);
+        for i in [1, 3] {
+            out[i] = b.mul(sign, out[i]);
         }
         out
     }
 
-    /// A rising edge at a distance: its mean and derivatives.
-    fn edge(&self, b: &mut Builder, from: Value, sd: Value, inverse: Value) -> [Value; 3] {
+    /// The edges at −h, h and 1 − h, seen from a distance in [0, ½].
+    fn edges(&self, b: &mut Builder, distance: Value, sd: Value) -> [Value; 4] {
+        let one = b.f32(1.0);
+        let inverse = b.div(one, sd);
+        let (below, above) = (b.sub(distance, self.half), b.add(distance, self.half));
+        let next = b.offset(above, -1.0);
+        let rising = [above, next].map(|from| self.edge(b, from, sd, inverse));
+        let falling = self.edge(b, below, sd, inverse);
+        [0, 1, 2, 3].map(|i| {
+            let sum = b.add(rising[0][i], rising[1][i]);
+            b.sub(sum, falling[i])
+        })
+    }
+
+    /// A rising edge at a distance: its mean and derivatives, each times as many σ.
+    fn edge(&self, b: &mut Builder, from: Value, sd: Value, inverse: Value) -> [Value; 4] {
         if b.is_zero(self.bevel) {
             let n = Normal::at(b, from, inverse);
-            let density = b.mul(n.density, inverse);
-            let curved = b.mul(n.z, density);
-            let curved = b.mul(curved, inverse);
-            return [n.below, density, b.neg(curved)];
+            let curved = b.mul(n.z, n.density);
+            let square = b.square(n.z);
+            let square = b.offset(square, -1.0);
+            return [n.below, n.density, b.neg(curved), b.mul(square, n.density)];
         }
         // (E[max(x + w/2, 0)] − E[max(x − w/2, 0)])/w.
         let narrowest = b.f32(NARROWEST);
@@ -135,63 +125,71 @@ impl Pulse {
         let far = b.f32(6.0);
         let passed = b.lt(far, m.z);
         let mean = b.select(passed, one, mean);
+        let ratio = b.mul(sd, inverse_width);
         let slope = b.sub(n.below, m.below);
-        let slope = b.mul(slope, inverse_width);
         let curved = b.sub(n.density, m.density);
-        let curved = b.mul(curved, inverse);
-        [mean, slope, b.mul(curved, inverse_width)]
+        let (from, to) = (b.mul(n.z, n.density), b.mul(m.z, m.density));
+        let third = b.sub(to, from);
+        [
+            mean,
+            b.mul(slope, ratio),
+            b.mul(curved, ratio),
+            b.mul(third, ratio),
+        ]
     }
 
     /// 2h + Σ 2/(πk) sin(2πkh) sinc(kw) e^{−2π²k²σ²} cos(2πkx).
-    fn harmonics(&self, b: &mut Builder, distance: Value, sd: Value) -> [Value; 3] {
+    fn harmonics(&self, b: &mut Builder, distance: Value, sd: Value) -> [Value; 4] {
         use std::f32::consts::{PI, TAU};
-        let width = b.add(self.half, self.half);
         let variance = b.square(sd);
-        let limit = b.f32(4.0);
-        let variance = b.min(variance, limit);
         let exponent = b.scale(variance, -2.0 * PI * PI);
+        let exponent = b.clamp(exponent, -40.0, 0.0);
         let first = b.exp(exponent);
-        let second = b.square(first);
-        let second = b.square(second);
-        let third = b.square(second);
-        let third = b.mul(third, first);
-        let angle = b.scale(distance, TAU);
-        let (s1, c1) = (b.sin(angle), b.cos(angle));
-        // Double and triple angles.
-        let twice = b.add(c1, c1);
-        let (s2, c2) = (b.mul(twice, s1), b.mul(twice, c1));
-        let c2 = b.offset(c2, -1.0);
-        let (s3, c3) = (b.mul(twice, s2), b.mul(twice, c2));
-        let (s3, c3) = (b.sub(s3, s1), b.sub(c3, c1));
+        let square = b.square(first);
+        // qᵏ²: each is the one before times q²ᵏ⁺¹.
+        let (mut damping, mut step) = (first, b.mul(square, first));
+        let place = b.circle(distance);
+        let place = b.multiples::<HARMONICS>(place);
+        let edge = b.circle(self.half);
+        let edge = b.multiples::<HARMONICS>(edge);
+        let ramp = (!b.is_zero(self.bevel)).then(|| {
+            let least = b.f32(NARROWEST);
+            let width = b.max(self.bevel, least);
+            let half = b.scale(width, 0.5);
+            let turned = b.circle(half);
+            let one = b.f32(1.0);
+            (b.multiples::<HARMONICS>(turned), b.div(one, width))
+        });
         let zero = b.f32(0.0);
-        let mut out = [width, zero, zero];
-        for (k, damping, sine, cosine) in [
-            (1.0, first, s1, c1),
-            (2.0, second, s2, c2),
-            (3.0, third, s3, c3),
-        ] {
-            let turn = b.scale(width, PI * k);
-            let mut amplitude = b.sin(turn);
-            if !b.is_zero(self.bevel) {
-                let least = b.f32(NARROWEST);
-                let half_turn = b.max(self.bevel, least);
-                let half_turn = b.scale(half_turn, PI * k);
-                let sinc = b.sin(half_turn);
-                let sinc = b.div(sinc, half_turn);
+        let mut sums = [zero; 4];
+        for i in 0..HARMONICS {
+            let k = (i + 1) as f32;
+            let mut amplitude = edge[i][1];
+            let mut factor = 2.0 / (PI * k);
+            if let Some((ramp, inverse)) = ramp {
+                let sinc = b.mul(ramp[i][1], inverse);
                 amplitude = b.mul(amplitude, sinc);
+                factor /= PI * k;
             }
             let amplitude = b.mul(amplitude, damping);
-            let amplitude = b.scale(amplitude, 2.0 / (PI * k));
-            let w = TAU * k;
-            for (sum, (trig, factor)) in
-                out.iter_mut()
-                    .zip([(cosine, 1.0), (sine, -w), (cosine, -w * w)])
-            {
-                let part = b.mul(amplitude, trig);
-                let part = b.scale(part, factor);
+            let parts = [0, 1].map(|part| b.mul(amplitude, place[i][part]));
+            for (order, sum) in sums.iter_mut().enumerate() {
+                let part = b.scale(parts[order % 2], factor * k.powi(order as i32));
                 *sum = b.add(*sum, part);
             }
+            damping = b.mul(damping, step);
+            step = b.mul(step, square);
         }
-        out
+        let width = b.add(self.half, self.half);
+        let once = b.scale(sd, TAU);
+        let twice = b.square(once);
+        let thrice = b.mul(twice, once);
+        let (back, curved) = (b.mul(sums[1], once), b.mul(sums[2], twice));
+        [
+            b.add(width, sums[0]),
+            b.neg(back),
+            b.neg(curved),
+            b.mul(sums[3], thrice),
+        ]
     }
 }

@@ -6,7 +6,7 @@
 
 use super::bond::{Bond, Brick};
 use super::pulse::Axis;
-use super::separable::{Taps, orders, phase, rest};
+use super::separable::{Taps, by_place, joined, orders, phase, rest};
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -172,16 +172,15 @@ fn point_function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> Functi
     b.finish(module)
 }
 
-/// The share of a Gaussian between two places, and its derivatives by the mean.
-fn share(b: &mut Builder, low: Value, high: Value, inverse: Value) -> [Value; 3] {
+/// The share of a Gaussian between two places, and its derivatives by the mean, each times as many σ.
+fn share(b: &mut Builder, low: Value, high: Value, inverse: Value) -> [Value; 4] {
     let (n, m) = (Normal::at(b, low, inverse), Normal::at(b, high, inverse));
     let value = b.sub(n.below, m.below);
     let slope = b.sub(n.density, m.density);
-    let slope = b.mul(slope, inverse);
     let (p, q) = (b.mul(n.z, n.density), b.mul(m.z, m.density));
-    let bend = b.sub(q, p);
-    let bend = b.mul(bend, inverse);
-    [value, slope, b.mul(bend, inverse)]
+    let (steep_p, steep_q) = (b.mul(n.z, p), b.mul(m.z, q));
+    let third = b.sub(steep_p, steep_q);
+    [value, slope, b.sub(q, p), b.sub(third, slope)]
 }
 
 /// The first copy of a brick that the footprint reaches, from the mean's distance from a brick, and
@@ -196,12 +195,23 @@ fn window(b: &mut Builder, from: Value, half: Value, sd: Value) -> [Value; 2] {
     [start, b.clamp(count, 0.0, MOST)]
 }
 
-/// The copies of one brick along a row, the body of a fold: Σ w(r − ½), its derivatives, and
-/// Σ w(r − ½)² and Σ w.
+/// Names of the sums over a row: of w(r − ½) and its derivatives, of w(r − ½)² and its first, and of
+/// w.
+const LINE: [&str; 7] = [
+    "value",
+    "slope",
+    "bend",
+    "third",
+    "square",
+    "square_slope",
+    "weight",
+];
+
+/// The copies of one brick along a row, the body of a fold.
 fn column(module: &mut Module) -> FunctionRef {
     let mut b = Builder::new("brick_column", "One more brick of a row.");
     let index = b.param("index", Type::U32);
-    let state = ["value", "slope", "bend", "square", "weight"].map(|name| b.param_f32(name));
+    let state = LINE.map(|name| b.param_f32(name));
     let [from, half, start, inverse] =
         ["from", "half", "start", "inverse"].map(|name| b.param_f32(name));
     let cell = b.param("cell_x", Type::I32);
@@ -220,20 +230,18 @@ fn column(module: &mut Module) -> FunctionRef {
     let number = b.offset(real, -0.5);
     let distance = b.sub(from, copy);
     let (low, high) = (b.add(distance, half), b.sub(distance, half));
-    let [w, slope, bend] = share(&mut b, low, high, inverse);
-    let value = b.mul(w, number);
+    let [w, slope, bend, third] = share(&mut b, low, high, inverse);
+    let (value, steep) = (b.mul(w, number), b.mul(slope, number));
     let parts = [
         value,
-        b.mul(slope, number),
+        steep,
         b.mul(bend, number),
+        b.mul(third, number),
         b.mul(value, number),
+        b.mul(steep, number),
         w,
     ];
-    for ((name, sum), part) in ["value", "slope", "bend", "square", "weight"]
-        .into_iter()
-        .zip(state)
-        .zip(parts)
-    {
+    for ((name, sum), part) in LINE.into_iter().zip(state).zip(parts) {
         let sum = b.add(sum, part);
         b.result(name, sum);
     }
@@ -256,6 +264,7 @@ fn row(module: &mut Module) -> FunctionRef {
         count,
         inverse_x,
         inverse_y,
+        correlation,
     ] = [
         "from_x",
         "from_y",
@@ -266,6 +275,7 @@ fn row(module: &mut Module) -> FunctionRef {
         "count",
         "inverse_x",
         "inverse_y",
+        "correlation",
     ]
     .map(|name| b.param_f32(name));
     let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
@@ -283,22 +293,17 @@ fn row(module: &mut Module) -> FunctionRef {
     let hash = b.scramble(hash);
     let distance = b.sub(from_y, copy);
     let (low, high) = (b.add(distance, half_y), b.sub(distance, half_y));
-    let [w, slope, bend] = share(&mut b, low, high, inverse_y);
+    let y = share(&mut b, low, high, inverse_y);
     let zero = b.f32(0.0);
     let count = b.trunc_i(count);
     let count = b.cast_u(count);
     let captures = [from_x, half_x, start_x, inverse_x, cells[0], hash];
-    let line = b.fold(&column, count, &[zero; 5], &captures);
-    let parts = [
-        b.mul(w, line[0]),
-        b.mul(w, line[1]),
-        b.mul(slope, line[0]),
-        b.mul(w, line[2]),
-        b.mul(slope, line[1]),
-        b.mul(bend, line[0]),
-        b.mul(w, line[3]),
-        b.mul(w, line[4]),
-    ];
+    let line = b.fold(&column, count, &[zero; LINE.len()], &captures);
+    let x = [0, 1, 2, 3].map(|i| line[i]);
+    let mut parts = joined(&mut b, x, y, correlation).to_vec();
+    let joint = b.mul(correlation, y[1]);
+    parts.push(b.dot(&[line[4], line[5]], &[y[0], joint]));
+    parts.push(b.mul(y[0], line[6]));
     for ((name, sum), part) in SUMS.into_iter().zip(state).zip(parts) {
         let sum = b.add(sum, part);
         b.result(name, sum);
@@ -323,8 +328,8 @@ fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let total = b.param_f32("weights");
     let state = SUMS.map(|name| b.param_f32(format!("sum_{name}")));
     let place = [b.param_f32("x"), b.param_f32("y")];
-    let captures =
-        ["along_x", "along_y", "sd_x", "sd_y", "start", "step"].map(|name| b.param_f32(name));
+    let captures = Taps::NAMES.map(|name| b.param_f32(name));
+    let [.., correlation] = captures;
     let kept = b.param_f32("kept");
     let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
     let seed = b.param("seed", Type::U32);
@@ -351,8 +356,20 @@ fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
         let count_y = b.select(gone, zero, count_y);
         let which = b.u32((i as u32).wrapping_mul(0x85eb_ca6b));
         let captures = [
-            from[0], from[1], half[0], half[1], start_x, start_y, count_x, inverse[0], inverse[1],
-            cells[0], cells[1], which, seed,
+            from[0],
+            from[1],
+            half[0],
+            half[1],
+            start_x,
+            start_y,
+            count_x,
+            inverse[0],
+            inverse[1],
+            correlation,
+            cells[0],
+            cells[1],
+            which,
+            seed,
         ];
         let rows = b.trunc_i(count_y);
         let rows = b.cast_u(rows);
@@ -361,6 +378,7 @@ fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
             *sum = b.add(*sum, part);
         }
     }
+    by_place(&mut b, &mut sums[..6], axes.map(|axis| axis.sd));
     let weighted = b.mul(weight, fade);
     let total = b.add(total, weight);
     b.result("weights", total);

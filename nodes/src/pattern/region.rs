@@ -185,6 +185,9 @@ fn edge(b: &mut Builder, [x1, y1]: [Value; 2], [x2, y2]: [Value; 2]) -> Measure 
     ]
 }
 
+/// The most vertices that are chosen by comparisons.
+const FEW: usize = 8;
+
 /// A closed polygon: vertices o + a A + b B + e E, counter-clockwise where A, B is.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Outline {
@@ -209,6 +212,24 @@ impl Outline {
         Self { vertices }
     }
 
+    /// The numbers of the vertex after so many, by the index of an edge: of a few by comparisons, which
+    /// cost less than three loads.
+    fn chosen(&self, b: &mut Builder, index: Value, after: usize) -> [Value; 3] {
+        let count = self.vertices.len();
+        let last = self.vertices[(count - 1 + after) % count];
+        let mut chosen = last.map(|x| b.f32(x));
+        for i in (0..count - 1).rev() {
+            let number = b.u32(i as u32);
+            let here = b.eq_u(index, number);
+            let vertex = self.vertices[(i + after) % count];
+            chosen = std::array::from_fn(|k| {
+                let x = b.f32(vertex[k]);
+                b.select(here, x, chosen[k])
+            });
+        }
+        chosen
+    }
+
     /// The numbers of a table: the first vertex comes again at the end.
     fn rows(&self) -> Vec<f32> {
         let again = self.vertices.first();
@@ -220,28 +241,34 @@ impl Outline {
 
     /// The body of a fold over the edges. Captures: the whitening, then o (from the mean), A, B, E.
     pub(crate) fn function(&self, module: &mut Module) -> FunctionRef {
-        let table = module.table("outline", self.rows());
+        let few = self.vertices.len() <= FEW;
+        let table = (!few).then(|| module.table("outline", self.rows()));
         let mut b = Builder::new("outline_edge", "One more edge of a polygon.");
         let index = b.param("index", Type::U32);
         let state = NAMES.map(|name| b.param_f32(name));
         let whitening = Whitening::declare(&mut b);
         let axes = ["o", "a", "b", "e"]
             .map(|name| [format!("{name}_x"), format!("{name}_y")].map(|name| b.param_f32(name)));
-        let three = b.u32(3);
-        let first = b.mul_u(index, three);
-        let mut vertex = |from: u32| {
-            let [p, q, r] = [0, 1, 2].map(|i| {
-                let shift = b.u32(from + i);
-                let at = b.add_u(first, shift);
-                b.load(table, at)
-            });
+        let mut vertex = |after: usize| {
+            let [p, q, r] = match table {
+                None => self.chosen(&mut b, index, after),
+                Some(table) => {
+                    let three = b.u32(3);
+                    let first = b.mul_u(index, three);
+                    [0, 1, 2].map(|i| {
+                        let shift = b.u32((3 * after + i) as u32);
+                        let at = b.add_u(first, shift);
+                        b.load(table, at)
+                    })
+                }
+            };
             let place = [0, 1].map(|k| {
                 let part = b.dot(&[p, q, r], &[axes[1][k], axes[2][k], axes[3][k]]);
                 b.add(axes[0][k], part)
             });
             whitening.apply(&mut b, place)
         };
-        let (start, end) = (vertex(0), vertex(3));
+        let (start, end) = (vertex(0), vertex(1));
         let part = edge(&mut b, start, end);
         for ((name, sum), part) in NAMES.into_iter().zip(state).zip(part) {
             let sum = b.add(sum, part);

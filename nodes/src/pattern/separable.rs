@@ -1,10 +1,11 @@
 //! Sums of products of pulses, one factor a coordinate, over a footprint that may be rotated.
 //!
-//! The two coordinates are Gaussians of covariance c. With ρ = |c|/(σ₁σ₂) they are
-//! m + w t + √(1 − ρ) (σ₁ε₁, ±σ₂ε₂), w = √ρ (σ₁, ±σ₂), with independent standard t, ε₁ and ε₂: given
-//! t, the mean of a product is the product of the means, in closed form. What is left is one
-//! integral over t of a function that is smooth at the scale √((1 − ρ)/ρ): the trapezoid rule at
-//! 1.5 of it, within ±4.1, is exact to 2e-4. An axis-aligned footprint needs one node.
+//! The two coordinates are Gaussians of covariance c. The mean of a product of functions of them is
+//! Σ ρⁿ σ₁ⁿσ₂ⁿ/n! A⁽ⁿ⁾B⁽ⁿ⁾ with A and B the means of the factors and ρ = |c|/(σ₁σ₂) (Mehler), of which
+//! four terms are within 1e-3 up to ρ = ½. Of a larger one r is taken apart: the coordinates are
+//! m + w t + √(1 − r) (σ₁ε₁, ±σ₂ε₂), w = √r (σ₁, ±σ₂), with a standard t and with ε₁ and ε₂ of the
+//! correlation ½. What is left is one integral over t of a function that is smooth at the scale
+//! √((1 − r)/r): three nodes to r = 0.15, then the trapezoid rule at 1.5 of it, within ±4.1.
 //!
 //! Correlations are limited to [`MOST_CORRELATED`]: 10:1 at 45 degrees. A longer footprint keeps its
 //! spread along both coordinates and is blurred across.
@@ -18,6 +19,12 @@ use std::fmt::Write as _;
 
 /// The largest correlation of the coordinates that is followed.
 const MOST_CORRELATED: f32 = 0.981;
+
+/// The largest correlation whose effect is expanded.
+const EXPANDED: f32 = 0.5;
+
+/// How much of a correlation three nodes suffice for.
+const THREE_NODES: f32 = 0.15;
 
 /// Nodes are at most this far from each other, in standard deviations of t.
 const WIDEST_STEP: f32 = 1.5;
@@ -266,6 +273,8 @@ pub(crate) struct Taps {
     pub(crate) along: [Value; 2],
     /// The standard deviations that are left, at least 1e-6.
     pub(crate) sd: [Value; 2],
+    /// Their correlation.
+    pub(crate) correlation: Value,
     /// The first node.
     pub(crate) start: Value,
     /// From a node to the next.
@@ -287,16 +296,18 @@ impl Taps {
         let rho = b.div(magnitude, both);
         let most = b.f32(MOST_CORRELATED);
         let rho = b.min(rho, most);
-        let left = b.sub(one, rho);
-        let (root, root_left) = (b.sqrt(rho), b.sqrt(left));
-        let wx = b.mul(root, sx);
-        let wy = b.mul(root, sy);
+        let expanded = b.f32(EXPANDED);
+        let kept = b.min(rho, expanded);
+        let (beyond, rest) = (b.sub(rho, kept), b.sub(one, kept));
+        let shared = b.div(beyond, rest);
+        let left = b.sub(one, shared);
+        let (root, root_left) = (b.sqrt(shared), b.sqrt(left));
         let negative = b.lt(xy, zero);
-        let back = b.neg(wy);
-        let wy = b.select(negative, back, wy);
+        let minus = b.f32(-1.0);
+        let sign = b.select(negative, minus, one);
         let sd = [sx, sy].map(|s| b.mul(s, root_left));
-        // 1/step² = 1/1.5² + ρ/(1.5² (1 − ρ)).
-        let ratio = b.div(rho, left);
+        // 1/step² = 1/1.5² + r/(1.5² (1 − r)).
+        let ratio = b.div(shared, left);
         let ratio = b.scale(ratio, 1.0 / (SMOOTH_STEP * SMOOTH_STEP));
         let inverse = b.offset(ratio, 1.0 / (WIDEST_STEP * WIDEST_STEP));
         let inverse = b.sqrt(inverse);
@@ -304,9 +315,19 @@ impl Taps {
         // weight is next to nothing.
         let half = b.scale(inverse, REACH);
         let half = b.floor(half);
-        // Without a correlation there is nothing to integrate.
-        let least = b.f32(1e-4);
-        let alone = b.lt(rho, least);
+        // Three nodes at the distance that gives them the variance 1 have nearly the weights of
+        // Gauss–Hermite.
+        let few = b.f32(THREE_NODES);
+        let few = b.lt(shared, few);
+        let (three, inverse_three) = (b.f32(1.039_3), b.f32(1.0 / 3f32.sqrt()));
+        let half = b.select(few, one, half);
+        let inverse = b.select(few, inverse_three, inverse);
+        let stretch = b.select(few, three, one);
+        let along = b.mul(root, stretch);
+        let (wx, wy) = (b.mul(along, sx), b.mul(along, sy));
+        let wy = b.mul(sign, wy);
+        // Without a shared part there is nothing to integrate.
+        let alone = b.le(shared, zero);
         let half = b.select(alone, zero, half);
         let step = b.div(one, inverse);
         let start = b.mul(half, step);
@@ -318,26 +339,38 @@ impl Taps {
         Self {
             along: [wx, wy],
             sd,
+            correlation: b.mul(sign, kept),
             start,
             step,
             count,
         }
     }
 
-    /// The numbers that the body of the fold takes: w, σ, the first node and the step.
-    pub(crate) fn captures(&self) -> [Value; 6] {
+    /// The numbers that the body of the fold takes, by [`Self::NAMES`].
+    pub(crate) fn captures(&self) -> [Value; 7] {
         let ([wx, wy], [sx, sy]) = (self.along, self.sd);
-        [wx, wy, sx, sy, self.start, self.step]
+        [wx, wy, sx, sy, self.start, self.step, self.correlation]
     }
+
+    /// Names of the captures.
+    pub(crate) const NAMES: [&str; 7] = [
+        "along_x",
+        "along_y",
+        "sd_x",
+        "sd_y",
+        "start",
+        "step",
+        "correlation",
+    ];
 
     /// Inside the body: the two coordinates at this node, and the node's weight.
     pub(crate) fn node(
         b: &mut Builder,
         index: Value,
         [x, y]: [Value; 2],
-        captures: [Value; 6],
+        captures: [Value; 7],
     ) -> ([Axis; 2], Value) {
-        let [wx, wy, sx, sy, start, step] = captures;
+        let [wx, wy, sx, sy, start, step, _] = captures;
         let number = b.float_u(index);
         let t = b.mul(number, step);
         let t = b.add(start, t);
@@ -374,8 +407,7 @@ fn tap(
         .map(|i| b.param_f32(format!("sum_{i}")))
         .collect();
     let place = [b.param_f32("x"), b.param_f32("y")];
-    let captures =
-        ["along_x", "along_y", "sd_x", "sd_y", "start", "step"].map(|name| b.param_f32(name));
+    let captures = Taps::NAMES.map(|name| b.param_f32(name));
     let mut parameters = Vec::new();
     for (i, constant) in constants.iter().enumerate() {
         parameters.push(match constant {
@@ -385,10 +417,12 @@ fn tap(
     }
     let (axes, weight) = Taps::node(&mut b, index, place, captures);
     let (constant, terms) = (pattern.terms)(&mut b, &parameters);
-    let mut parts = averaged(&mut b, constant, &terms, axes, orders);
+    let [.., correlation] = captures;
+    let of = (axes, correlation);
+    let mut parts = averaged(&mut b, constant, &terms, of, orders);
     if let Some(soft) = soft {
         let (constant, terms) = (soft.squares)(&mut b, &parameters);
-        parts.extend(averaged(&mut b, constant, &terms, axes, 1));
+        parts.extend(averaged(&mut b, constant, &terms, of, 1));
     }
     let total = b.add(total, weight);
     b.result("weights", total);
@@ -400,13 +434,13 @@ fn tap(
     b.finish(module)
 }
 
-/// The mean of the terms over independent coordinates, and as many derivatives as are asked for:
-/// ∂x, ∂y, ∂xx, ∂xy, ∂yy.
+/// The mean of the terms over two coordinates, and as many derivatives as are asked for: ∂x, ∂y, ∂xx,
+/// ∂xy, ∂yy.
 fn averaged(
     b: &mut Builder,
     constant: f32,
     terms: &[Term],
-    axes: [Axis; 2],
+    (axes, correlation): ([Axis; 2], Value),
     orders: usize,
 ) -> Vec<Value> {
     let zero = b.f32(0.0);
@@ -415,14 +449,50 @@ fn averaged(
     for term in terms {
         let [x, y] = [(term.x, axes[0]), (term.y, axes[1])].map(|(pulse, axis)| match pulse {
             Some(pulse) => pulse.moments(b, axis),
-            None => [b.f32(1.0), zero, zero],
+            None => [b.f32(1.0), zero, zero, zero],
         });
         let x = x.map(|v| b.scale(v, term.coefficient));
-        for (sum, [i, j]) in (out.iter_mut()).zip([[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]])
-        {
-            let part = b.mul(x[i], y[j]);
+        for (sum, part) in out.iter_mut().zip(joined(b, x, y, correlation)) {
             *sum = b.add(*sum, part);
         }
     }
+    by_place(b, &mut out, axes.map(|axis| axis.sd));
     out
+}
+
+/// The mean of a product of functions of two Gaussians and its derivatives, each times as many σ, from
+/// those of the factors: the first four terms of Mehler's series, as far as third derivatives go.
+pub(super) fn joined(
+    b: &mut Builder,
+    x: [Value; 4],
+    y: [Value; 4],
+    correlation: Value,
+) -> [Value; 6] {
+    let square = b.square(correlation);
+    let cube = b.mul(square, correlation);
+    let (half, sixth) = (b.scale(square, 0.5), b.scale(cube, 1.0 / 6.0));
+    let series = [b.f32(1.0), correlation, half, sixth];
+    // The series of y's derivatives of order k.
+    let [value, slope, bend] = [0, 1, 2].map(|k| {
+        let terms = series.iter().zip(&y[k..]);
+        terms.map(|(&c, &y)| b.mul(c, y)).collect::<Vec<Value>>()
+    });
+    [
+        b.dot(&x, &value),
+        b.dot(&x[1..], &value),
+        b.dot(&x, &slope),
+        b.dot(&x[2..], &value),
+        b.dot(&x[1..], &slope),
+        b.dot(&x, &bend),
+    ]
+}
+
+/// Derivatives times σ as derivatives.
+pub(super) fn by_place(b: &mut Builder, parts: &mut [Value], sd: [Value; 2]) {
+    let one = b.f32(1.0);
+    let [x, y] = sd.map(|sd| b.div(one, sd));
+    let factors = [x, y, b.square(x), b.mul(x, y), b.square(y)];
+    for (part, factor) in parts.iter_mut().skip(1).zip(factors) {
+        *part = b.mul(*part, factor);
+    }
 }

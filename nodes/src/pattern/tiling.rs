@@ -25,7 +25,7 @@ const LONGEST: f32 = 1.3;
 const HIGHEST: f64 = 4.3;
 
 /// How far a footprint reaches, in standard deviations.
-const REACH: f32 = 4.0;
+const REACH: f32 = 3.6;
 
 /// The distance of rows of a triangular lattice, as MaterialX has it.
 const ROW: f64 = 0.866_025;
@@ -161,8 +161,8 @@ impl Lattice {
         }
     }
 
-    /// (k, l, amplitude) of half of the harmonics, and the mean.
-    fn harmonics(self, tile: &Tile) -> (f64, Vec<f32>) {
+    /// (k, l, amplitude) of half of the harmonics, the lowest first, and the mean.
+    fn harmonics(self, tile: &Tile) -> (f64, Vec<[f64; 3]>) {
         let area = self.row();
         let most = HIGHEST as i32 + 1;
         let mut rows = Vec::new();
@@ -176,9 +176,10 @@ impl Lattice {
                 }
                 let turned = TAU * self.origin() * f64::from(m + n);
                 let amplitude = 2.0 * turned.cos() * tile.transform(k, l) / area;
-                rows.extend([k as f32, l as f32, amplitude as f32]);
+                rows.push([k, l, amplitude]);
             }
         }
+        rows.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
         (tile.transform(0.0, 0.0) / area, rows)
     }
 }
@@ -265,8 +266,10 @@ fn point(b: &mut Builder, lattice: Lattice, tile: &Tile, [x, y]: [Value; 2]) -> 
 /// The measure of all figures: x, y, Σ and its eigenvalues.
 fn tiling_function(module: &mut Module, lattice: Lattice, tile: &Tile) -> FunctionRef {
     let (mean, rows) = lattice.harmonics(tile);
-    let count = rows.len() / 3;
-    let series = harmonic_function(module, rows);
+    let kept = kept_harmonics(&rows);
+    let kept = module.table("kept_harmonics", kept);
+    let flat = rows.iter().flatten().map(|&x| x as f32).collect();
+    let series = harmonic_function(module, flat);
     let row = row_function(module, lattice, tile);
     let mut b = Builder::new("tiling", "The share of a footprint that lies in figures.");
     let place = [b.param_f32("x"), b.param_f32("y")];
@@ -332,7 +335,16 @@ fn tiling_function(module: &mut Module, lattice: Lattice, tile: &Tile) -> Functi
     let near: Measure = std::array::from_fn(|i| near[i]);
 
     // All at once, where Σ is wide enough or has been made so.
-    let count = b.u32(count as u32);
+    // The widened minor axis is at least this, wherever the series is read.
+    let minor = b.max(less, target);
+    let sd = b.sqrt(minor);
+    let size = b.scale(sd, STEPS as f32);
+    let size = b.clamp(size, 0.0, (MOST_KEPT - 1) as f32);
+    let size = b.trunc_i(size);
+    let size = b.cast_u(size);
+    let count = b.load(kept, size);
+    let count = b.trunc_i(count);
+    let count = b.cast_u(count);
     let none = b.u32(0);
     let count = b.select(single, none, count);
     let mut captures = place.to_vec();
@@ -349,6 +361,26 @@ fn tiling_function(module: &mut Module, lattice: Lattice, tile: &Tile) -> Functi
         b.result(name, value);
     }
     b.finish(module)
+}
+
+/// Rows of the table of harmonics for a standard deviation of 1.
+const STEPS: usize = 32;
+
+/// Rows of that table.
+const MOST_KEPT: usize = 48;
+
+/// How many of the lowest harmonics a footprint of at least i/32 cells leaves: the others are damped
+/// to less than 5e-5 of 1.
+fn kept_harmonics(rows: &[[f64; 3]]) -> Vec<f32> {
+    let count = |i: usize| {
+        let variance = (i as f64 / STEPS as f64).powi(2);
+        let left = |row: &[f64; 3]| {
+            let damping = (-2.0 * PI * PI * variance * row[0].hypot(row[1]).powi(2)).exp();
+            row[2].abs() * damping > 5e-5
+        };
+        rows.iter().rposition(left).map_or(0, |last| last + 1) as f32
+    };
+    (0..MOST_KEPT).map(count).collect()
 }
 
 /// One more harmonic, the body of a fold.
@@ -373,10 +405,10 @@ fn harmonic_function(module: &mut Module, rows: Vec<f32>) -> FunctionRef {
     let damping = b.exp(exponent);
     let amplitude = b.mul(amplitude, damping);
     let turns = b.dot(&[k, l], &place);
-    let whole = b.floor(turns);
+    let raised = b.offset(turns, 0.5);
+    let whole = b.floor(raised);
     let turns = b.sub(turns, whole);
-    let angle = b.scale(turns, TAU as f32);
-    let (sine, cosine) = (b.sin(angle), b.cos(angle));
+    let [cosine, sine] = b.circle(turns);
     let value = b.mul(amplitude, cosine);
     let slope = b.mul(amplitude, sine);
     let slope = b.scale(slope, -TAU as f32);

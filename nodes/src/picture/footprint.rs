@@ -2,9 +2,9 @@
 //! picture alone, four or nine parts of the pixel.
 //!
 //! The part (k, j) is a Gaussian of variance v at k steps along the longer axis from node j of the pixel.
-//! - Nodes: 2 × 2 with half of the variance for a Gaussian filter; 3 × 3 with 8/9 for a box, whose
-//!   transform they follow to the second zero. They meet as the footprint becomes 3 times as long
-//!   as wide, and are one from there.
+//! - Nodes: for a Gaussian filter 2 × 2 with half of the variance, where it is less than a texel or as
+//!   large as the tiles; 3 × 3 with 8/9 for a box, whose transform they follow to the second zero.
+//!   They meet as the footprint becomes 3 times as long as wide, and are one from there.
 //! - Probes: at multiples of d = 2.2 √v with weights (1 − k²/ρ²)², ρ = √7 σ_e/d + 1, stretched so that
 //!   their variance is σ_e² = σ₁² − v. A probe is born and dies with a weight of 0, so the result is
 //!   continuous in the footprint. Beyond `longest` the shorter axis is taken for longer.
@@ -20,6 +20,21 @@ pub(crate) struct Parts {
     pub(crate) longest: f32,
     /// Whether the pixel has nodes.
     pub(crate) nodes: bool,
+}
+
+/// Between these variances, in squared texels, the nodes of a Gaussian filter meet: under smaller ones
+/// the texels between which is interpolated still show.
+const TEXELS: [f32; 2] = [0.8, 0.4];
+
+/// Between the first two, in squared pictures, they part again, and meet between the others: there
+/// tiles begin and end within the footprint, and still differ.
+const TILES: [[f32; 2]; 2] = [[0.0057, 0.012], [0.0576, 0.0289]];
+
+/// 0 at the first number and beyond, 1 at the second.
+fn ramp(b: &mut Builder, x: Value, [from, to]: [f32; 2]) -> Value {
+    let x = b.offset(x, -from);
+    let x = b.scale(x, 1.0 / (to - from));
+    b.clamp(x, 0.0, 1.0)
 }
 
 /// The distance of probes, in the parts' own σ.
@@ -120,9 +135,17 @@ impl Footprint {
             let fade = b.scale(ratio, -0.5);
             let fade = b.offset(fade, 1.5);
             let fade = b.clamp(fade, 0.0, 1.0);
-            let (most, count) = match filter {
-                PixelFilter::Box => (8.0 / 9.0, 3.0),
-                PixelFilter::Gaussian(_) => (0.5, 2.0),
+            let (most, count, fade) = match filter {
+                PixelFilter::Box => (8.0 / 9.0, 3.0, fade),
+                PixelFilter::Gaussian(_) => {
+                    let pictures = b.scale(less, 1.0 / (w * h));
+                    let texels = ramp(b, less, TEXELS);
+                    let rises = ramp(b, pictures, TILES[0]);
+                    let falls = ramp(b, pictures, TILES[1]);
+                    let middle = b.min(rises, falls);
+                    let needed = b.max(texels, middle);
+                    (0.5, 2.0, b.mul(fade, needed))
+                }
             };
             let (share, count) = (b.scale(fade, most), b.f32(count));
             let split = b.lt(zero, share);

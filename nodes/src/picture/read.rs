@@ -5,7 +5,7 @@ use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
 
 /// Numbers of a row of the table that says where the levels are.
-const ROW: u32 = 8;
+const ROW: u32 = 4;
 
 /// The table of a pyramid, and where its levels are.
 #[derive(Clone, Debug)]
@@ -13,8 +13,7 @@ pub(crate) struct Pyramid {
     pub(crate) layout: Layout,
     /// The numbers of all levels.
     numbers: u32,
-    /// A row a level: samples in x and y, samples in a padded row, the offset as two numbers, the
-    /// stride, σ² in texels, 0.
+    /// A row a level: samples in x and y, and the offset as two numbers.
     rows: u32,
     key: String,
 }
@@ -59,6 +58,14 @@ impl Tap {
 /// How wide a level's Gaussian is with bilinear interpolation on a grid of σ: σ² + σ²/6.
 const WIDENED: f32 = 7.0 / 6.0;
 
+/// σ² of a level, in texels: 0, then 1, 2, 4, …
+fn variance_of(b: &mut Builder, row: Value) -> Value {
+    let one = b.u32(1);
+    let doubled = b.shl_u(one, row);
+    let square = b.shr_u(doubled, one);
+    b.float_u(square)
+}
+
 impl Pyramid {
     /// The pyramid of this layout; `key` names whatever the numbers depend on.
     pub(crate) fn new(
@@ -68,13 +75,10 @@ impl Pyramid {
         layout: Layout,
         numbers: impl FnOnce() -> Numbers,
     ) -> Self {
-        let rows = layout.levels.iter().enumerate().flat_map(|(l, level)| {
+        let rows = layout.levels.iter().flat_map(|level| {
             let [nx, ny] = level.size.map(|n| n as f32);
-            let offset = level.offset;
-            let variance = if l == 0 { 0.0 } else { (l as f32 - 1.0).exp2() };
-            let (high, low) = ((offset >> 12) as f32, (offset & 0xfff) as f32);
-            let (width, stride) = (level.padded[0] as f32, level.stride as f32);
-            [nx, ny, width, high, low, stride, variance, 0.0]
+            let (high, low) = (level.offset >> 12, level.offset & 0xfff);
+            [nx, ny, high as f32, low as f32]
         });
         let rows: Vec<f32> = rows.collect();
         let numbers = lower.table(&format!("{key} numbers"), name, numbers);
@@ -157,7 +161,7 @@ impl Pyramid {
         let level = b.select(below, zero, level);
         let row = b.trunc_i(level);
         let row = b.cast_u(row);
-        let own = self.row(b, row, 6);
+        let own = variance_of(b, row);
         let own = b.max(own, one);
         let ratio = b.div(scaled, own);
         let beyond = b.offset(ratio, -1.0);
@@ -184,7 +188,6 @@ impl Pyramid {
     /// the function itself.
     fn level(&self, b: &mut Builder, row: Value, place: [Value; 2], carries: bool) -> Tap {
         let sizes = [self.row(b, row, 0), self.row(b, row, 1)];
-        let width = self.row(b, row, 2);
         let [left, top] = [0, 1].map(|axis| {
             let margin = self.layout.address[axis].margin() as f32;
             let at = b.mul(place[axis], sizes[axis]);
@@ -202,12 +205,21 @@ impl Pyramid {
             let whole = b.trunc_i(x);
             b.cast_u(whole)
         };
-        let stride = self.row(b, row, 5);
-        let (width, stride) = (unsigned(b, width), unsigned(b, stride));
+        let margins = self.layout.address[0].margin() as f32;
+        let width = b.offset(sizes[0], 2.0 * margins);
+        let width = unsigned(b, width);
+        let none = {
+            let zero = b.u32(0);
+            b.eq_u(row, zero)
+        };
+        // Level 0 has no covariances.
+        let n = self.layout.channels;
+        let (few, all) = (b.u32(n as u32), b.u32((n + triangle(n)) as u32));
+        let stride = b.select(none, few, all);
         let (x, y) = (unsigned(b, left.0), unsigned(b, top.0));
         let rows = b.mul_u(y, width);
         let sample = b.add_u(rows, x);
-        let (high, low) = (self.row(b, row, 3), self.row(b, row, 4));
+        let (high, low) = (self.row(b, row, 2), self.row(b, row, 3));
         let (high, low) = (unsigned(b, high), unsigned(b, low));
         let twelve = b.u32(12);
         let high = b.shl_u(high, twelve);
@@ -217,7 +229,6 @@ impl Pyramid {
         let down = b.mul_u(width, stride);
         let below = b.add_u(first, down);
         let corners = [first, b.add_u(first, stride), below, b.add_u(below, stride)];
-        let n = self.layout.channels;
         let number = |b: &mut Builder, i: usize| {
             let i = b.u32(i as u32);
             corners.map(|corner| {
@@ -261,16 +272,12 @@ impl Pyramid {
             let other = b.sub(one, x);
             b.mul(x, other)
         });
-        let sigma = self.row(b, row, 6);
+        let sigma = variance_of(b, row);
         let kernel = [0, 1].map(|axis| {
             let square = b.square(per_texel[axis]);
             let step = b.div(spread[axis], square);
             b.add(sigma, step)
         });
-        let none = {
-            let zero = b.u32(0);
-            b.eq_u(row, zero)
-        };
         let zero = b.f32(0.0);
         let mut rest = Vec::new();
         for i in 0..n {

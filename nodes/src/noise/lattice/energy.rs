@@ -15,6 +15,8 @@ pub(super) struct Energy {
     pub(super) first: Value,
     /// V₂ = ½ ∂²_λ F(λΣ) at λ = 1, a share of F(0).
     pub(super) second: Value,
+    /// A lower bound of F(0) − F − V₁: (9/4 tr² − 3 det)/D³, which for small Σ is V₂.
+    pub(super) least: Value,
 }
 
 impl Energy {
@@ -65,12 +67,20 @@ impl Energy {
         let bend = b.sub(bend, drop);
         let second = b.mul(weight, bend);
         let second = b.scale(second, 0.5);
+        let cube = b.square(inverse);
+        let cube = b.mul(cube, inverse);
+        let square = b.square(trace);
+        let square = b.scale(square, 2.25);
+        let steep = b.scale(determinant, 3.0);
+        let least = b.sub(square, steep);
+        let least = b.mul(least, cube);
         Self {
             inverse,
             root,
             left,
             first,
             second,
+            least,
         }
     }
 }

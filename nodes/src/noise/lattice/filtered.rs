@@ -1,18 +1,26 @@
 //! One octave of the filtered noise.
 
 use super::energy::Energy;
-use super::row::{Frame, Moment, moments, row};
+use super::row::{Frame, orders, row};
 use super::{MOST_ROWS, Octave, Octaves, WIDTH};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 
-/// An octave that keeps less than the first share of its variance has faded to nothing, above the
-/// second it has not begun to.
-pub(super) const FADE: [f32; 2] = [0.0007, 0.0025];
+/// An octave that keeps less than the first share of the variance of the whole noise has faded to
+/// nothing, above the second it has not begun to.
+pub(super) const FADE: [f32; 2] = [0.0004, 0.0008];
+
+/// An octave is taken for at least this share of the variance: so it does not fade before the filter
+/// has removed 94 % of its own.
+pub(super) const LEAST_SHARE: f32 = 0.0133;
 
 /// The spread, in squared cells, up to which the three nearest rows or columns suffice, and from
 /// which on a fourth counts in full.
 const FOURTH: [f32; 2] = [0.0144, 0.04];
+
+/// Octaves of a smaller share of the variance do without a fourth row: what it adds to the noise is
+/// below what others drop.
+const MINOR_SHARE: f32 = 0.1;
 
 /// Rows are summed up to this many times √T₂₂ from the position.
 const REACH: f32 = 2.3;
@@ -75,7 +83,11 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     let size = b.sqrt(t_yy);
     let needed = b.scale(size, 2.0 * REACH);
     let (three, four) = (b.f32(3.0), b.f32(4.0));
-    let is_near = b.le(outer[1], zero);
+    let power = b.square(state.amplitude);
+    let share = b.scale(power, 1.0 / octaves.sd().powi(2));
+    let (is_near, minor) = (b.le(outer[1], zero), b.f32(MINOR_SHARE));
+    let is_minor = b.lt(share, minor);
+    let is_near = b.or(is_near, is_minor);
     let least = b.select(is_near, three, four);
     let minus = b.neg(needed);
     let floor = b.floor(minus);
@@ -85,7 +97,10 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     let rows = b.min(rows, most);
 
     // The octave fades to nothing before it is dropped.
-    let by_energy = ramp(b, energy.left, FADE);
+    let least = b.f32(LEAST_SHARE);
+    let share = b.max(share, least);
+    let kept = b.mul(energy.left, share);
+    let by_energy = ramp(b, kept, FADE);
     let by_reach = ramp(b, needed, [MOST_ROWS, MOST_ROWS * 0.8]);
     let fade = b.mul(by_energy, by_reach);
     let gone = b.le(fade, zero);
@@ -112,20 +127,30 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     let right = b.le(one, rounded);
     let outer_row = b.select(right, first_row, last_row);
     let outer_row = b.select(is_near, no_row, outer_row);
+    let minus = b.f32(-1.0);
+    let sign = b.select(swapped, minus, one);
+    let square = b.square(shear);
+    let even = b.sub(one, square);
+    let turn = [
+        b.mul(sign, even),
+        b.mul(sign, shear),
+        b.neg(sign),
+        b.add(shear, shear),
+    ];
     let frame = Frame {
         x,
         y: b.sub(y, start),
         address,
         shear,
+        turn,
         precisions: [p, q],
         decay,
         outer_row,
         outer,
     };
-    let kinds = moments(count);
-    let kernels = b.fold(&row, row_count, &vec![zero; kinds.len()], &frame.captures());
-    let swap = Swap { swapped, shear };
-    let parts = swap.derivatives(b, &kinds, &kernels, count);
+    let zeros = vec![zero; orders(count).len()];
+    let kernels = b.fold(&row, row_count, &zeros, &frame.captures());
+    let parts = in_lattice(b, swapped, shear, &kernels);
 
     // κ = a³/(√π √det T) = a/√(πD).
     let kappa = b.scale(energy.root, WIDTH / std::f32::consts::PI.sqrt());
@@ -141,7 +166,6 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     }
     if let Some(rest) = rest {
         let left = remainder(b, mode, &energy, fade);
-        let power = b.square(state.amplitude);
         let part = b.mul(power, left);
         let rest = b.add(rest, part);
         b.result("rest", rest);
@@ -150,69 +174,28 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     builder.finish(module)
 }
 
-/// How the rows' frame lies in the lattice.
-struct Swap {
-    swapped: Value,
-    shear: Value,
-}
-
-impl Swap {
-    /// The noise and its derivatives (xx, xy, yy last) in the lattice's frame: ∂ₓ is ∂ₓ′, and ∂ᵧ is
-    /// ∂ᵧ − t∂ₓ′. Exchanged axes turn the sign of cos θ.
-    fn derivatives(
-        &self,
-        b: &mut Builder,
-        kinds: &[Moment],
-        sums: &[Value],
-        count: usize,
-    ) -> Vec<Value> {
-        let find = |moment| {
-            let i = kinds.iter().position(|&kind| kind == moment);
-            sums[i.expect("the rows sum it")]
-        };
-        let (one, t) = (b.f32(1.0), self.shear);
+/// The noise and its derivatives (x, y, xx, xy, yy) in the lattice's frame, from those along x′ and y
+/// up to the sign (−1)^{i+j}: ∂ₓ is ∂ₓ′, and ∂ᵧ is ∂ᵧ − t∂ₓ′.
+fn in_lattice(b: &mut Builder, swapped: Value, t: Value, sums: &[Value]) -> Vec<Value> {
+    let mut parts = vec![sums[0]];
+    if let [_, x, y, ..] = *sums {
+        let lean = b.mul(t, x);
+        let y = b.sub(lean, y);
+        let x = b.neg(x);
+        parts.extend([b.select(swapped, y, x), b.select(swapped, x, y)]);
+    }
+    if let [_, _, _, xx, xy, yy] = *sums {
+        let lean = b.mul(t, xx);
+        let mixed = b.sub(xy, lean);
         let twice = b.add(t, t);
         let square = b.square(t);
-        let rest = b.sub(one, square);
-        let minus = b.f32(-1.0);
-        let sign = b.select(self.swapped, minus, one);
-        // The derivative of orders i and j along x′ and y, up to the sign (−1)^{i+j}.
-        let of = |b: &mut Builder, i: usize, j: usize| {
-            let [xx, xy, yy] =
-                [(2, 0), (1, 1), (0, 2)].map(|(x, y)| find(Moment::Cosine(x + i, y + j)));
-            let cosine = b.dot(&[rest, twice], &[xx, xy]);
-            let cosine = b.sub(cosine, yy);
-            let [xx, xy] = [(2, 0), (1, 1)].map(|(x, y)| find(Moment::Sine(x + i, y + j)));
-            let lean = b.mul(t, xx);
-            let sine = b.sub(xy, lean);
-            let sine = b.add(sine, sine);
-            let cosine = b.mul(sign, cosine);
-            b.add(cosine, sine)
-        };
-        let mut parts = vec![of(b, 0, 0)];
-        if count > 0 {
-            let (x, y) = (of(b, 1, 0), of(b, 0, 1));
-            let lean = b.mul(t, x);
-            let y = b.sub(lean, y);
-            let x = b.neg(x);
-            parts.extend([b.select(self.swapped, y, x), b.select(self.swapped, x, y)]);
-        }
-        if count > 1 {
-            let [xx, xy, yy] = [(2, 0), (1, 1), (0, 2)].map(|(i, j)| of(b, i, j));
-            let lean = b.mul(t, xx);
-            let mixed = b.sub(xy, lean);
-            let cross = b.mul(twice, xy);
-            let steep = b.mul(square, xx);
-            let yy = b.sub(yy, cross);
-            let yy = b.add(yy, steep);
-            parts.extend([
-                b.select(self.swapped, yy, xx),
-                mixed,
-                b.select(self.swapped, xx, yy),
-            ]);
-        }
-        parts
+        let cross = b.mul(twice, xy);
+        let steep = b.mul(square, xx);
+        let yy = b.sub(yy, cross);
+        let yy = b.add(yy, steep);
+        parts.extend([b.select(swapped, yy, xx), mixed, b.select(swapped, xx, yy)]);
     }
+    parts
 }
 
 /// What the filter removed, 1 − F, less what the mode carries of it, plus what fading drops: shares
@@ -226,7 +209,7 @@ fn remainder(b: &mut Builder, mode: Mode, energy: &Energy, fade: Value) -> Value
     let dropped = b.mul(dropped, energy.left);
     let uncarried = b.sub(one, square);
     let (carried, least) = match mode {
-        Mode::Local => (energy.first, b.max(energy.second, zero)),
+        Mode::Local => (energy.first, energy.least),
         Mode::Quad => (b.add(energy.first, energy.second), zero),
         _ => (zero, zero),
     };

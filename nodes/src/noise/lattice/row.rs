@@ -3,30 +3,18 @@
 //!
 //! The kernel is (cos θ (∂ₓₓ − ∂ᵧᵧ) + 2 sin θ ∂ₓᵧ) e^{−dᵀT⁻¹d/2}. With y along a row of the loop,
 //! t = T₁₂/T₂₂, p = (T⁻¹)₁₁ and q = 1/T₂₂, the Gaussian is e^{−px′²/2} e^{−qy²/2} in x′ = x − ty, and
-//! each of its derivatives is a Hermite polynomial of px′ times one of qy. Two sums over the four
-//! points a column polynomial (with cos θ and with sin θ) therefore give every derivative.
+//! each of its derivatives is a Hermite polynomial of px′ times one of qy. As ∂ᵧ is there ∂ᵧ − t∂ₓ′,
+//! the kernel is a ∂ₓ′ₓ′ + 2b ∂ₓ′ᵧ − c ∂ᵧᵧ with a = (1 − t²) cos θ − 2t sin θ, b = t cos θ + sin θ and
+//! c = cos θ: three sums over the four points a column polynomial give every derivative.
 
 use super::address::Address;
 use crate::noise::hash::direction;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
-/// A sum over lattice points: of cos θ or sin θ, times the derivatives of these orders along x′ and y.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Moment {
-    /// With cos θ.
-    Cosine(usize, usize),
-    /// With sin θ.
-    Sine(usize, usize),
-}
-
-/// The sums that the noise and its first `derivatives` derivatives need.
-pub(super) fn moments(derivatives: usize) -> Vec<Moment> {
-    let mut all = Vec::new();
-    for order in 2..=2 + derivatives {
-        all.extend((0..=order).map(|y| Moment::Cosine(order - y, y)));
-        all.extend((0..order).map(|y| Moment::Sine(order - y, y)));
-    }
-    all
+/// The orders along x′ and y of the noise and its derivatives, up to `most`.
+pub(super) fn orders(most: usize) -> Vec<[usize; 2]> {
+    let of = |order: usize| (0..=order).map(move |y| [order - y, y]);
+    (0..=most).flat_map(of).collect()
 }
 
 /// g₀, g₁, …, gₙ for g₀ = `envelope`: gₙ = (−1)ⁿ ∂ⁿ of a Gaussian of precision `p`, where `v` is
@@ -51,8 +39,11 @@ pub(super) struct Frame {
     pub(super) y: Value,
     /// The lattice, its rows counted from the first one.
     pub(super) address: Address,
-    /// t, p, q.
+    /// t.
     pub(super) shear: Value,
+    /// ±(1 − t²), ±t and ∓1 for cos θ, and 2t: the lower signs where the rows lie along x.
+    pub(super) turn: [Value; 4],
+    /// p, q.
     pub(super) precisions: [Value; 2],
     /// e^{−p}.
     pub(super) decay: Value,
@@ -68,6 +59,8 @@ impl Frame {
             y: b.param_f32("y"),
             address: Address::declare(b, tiles),
             shear: b.param_f32("shear"),
+            turn: ["turn_even", "turn_lean", "turn_level", "turn_steep"]
+                .map(|name| b.param_f32(name)),
             precisions: [b.param_f32("p"), b.param_f32("q")],
             decay: b.param_f32("decay"),
             outer_row: b.param("outer_row", Type::U32),
@@ -79,7 +72,9 @@ impl Frame {
         let [p, q] = self.precisions;
         let mut all = vec![self.x, self.y];
         all.extend(self.address.captures());
-        all.extend([self.shear, p, q, self.decay, self.outer_row]);
+        all.push(self.shear);
+        all.extend(self.turn);
+        all.extend([p, q, self.decay, self.outer_row]);
         all.extend(self.outer);
         all
     }
@@ -87,13 +82,13 @@ impl Frame {
 
 /// One lattice row, the body of a fold over rows.
 pub(super) fn row(module: &mut Module, count: usize, tiles: bool) -> FunctionRef {
-    let moments = moments(count);
-    let order = 2 + count;
+    let orders = orders(count);
+    let most = 2 + count;
     let doc = "The filtered kernels of one lattice row.";
     let mut builder = Builder::new("lattice_row", doc);
     let b = &mut builder;
     let index = b.param("index", Type::U32);
-    let sums: Vec<Value> = (0..moments.len())
+    let sums: Vec<Value> = (0..orders.len())
         .map(|i| b.param_f32(format!("sum_{i}")))
         .collect();
     let frame = Frame::declare(b, tiles);
@@ -142,14 +137,22 @@ pub(super) fn row(module: &mut Module, count: usize, tiles: bool) -> FunctionRef
         b.mul(last, right_weight),
     ];
 
-    let mut columns: [Vec<Value>; 2] = [Vec::new(), Vec::new()];
+    let [even, lean, minus, twice] = frame.turn;
+    let mut columns: [Vec<Value>; 3] = Default::default();
     let mut v = b.add(v, p);
     for (key, envelope) in keys.into_iter().zip(envelopes) {
         let hash = b.scramble(key);
-        let turns = direction(b, hash);
-        let polynomials = derivatives(b, envelope, v, p, order);
-        for (sums, turn) in columns.iter_mut().zip(turns) {
-            let parts: Vec<Value> = polynomials.iter().map(|&g| b.mul(turn, g)).collect();
+        let [cosine, sine] = direction(b, hash);
+        let polynomials = derivatives(b, envelope, v, p, most);
+        let (level, slope) = (b.mul(even, cosine), b.mul(twice, sine));
+        let across = b.sub(level, slope);
+        let level = b.mul(lean, cosine);
+        let mixed = b.add(level, sine);
+        for (sums, (turn, first)) in
+            (columns.iter_mut()).zip([(across, 2), (mixed, 1), (cosine, 0)])
+        {
+            let parts = polynomials[first..=first + count].iter();
+            let parts: Vec<Value> = parts.map(|&g| b.mul(turn, g)).collect();
             *sums = match sums.is_empty() {
                 true => parts,
                 false => (sums.iter().zip(parts))
@@ -159,13 +162,13 @@ pub(super) fn row(module: &mut Module, count: usize, tiles: bool) -> FunctionRef
         }
         v = b.sub(v, p);
     }
-    let rows = derivatives(b, one, w, q, order);
-    for (i, (&moment, &sum)) in moments.iter().zip(&sums).enumerate() {
-        let (column, row) = match moment {
-            Moment::Cosine(x, y) => (columns[0][x], rows[y]),
-            Moment::Sine(x, y) => (columns[1][x], rows[y]),
-        };
-        let part = b.mul(column, row);
+    let rows = derivatives(b, one, w, q, most);
+    let [across, mixed, level] = columns;
+    for (i, (&[x, y], &sum)) in orders.iter().zip(&sums).enumerate() {
+        let double = b.add(rows[y + 1], rows[y + 1]);
+        let steep = b.mul(minus, rows[y + 2]);
+        let columns = [across[x], mixed[x], level[x]];
+        let part = b.dot(&columns, &[rows[y], double, steep]);
         let sum = b.add(sum, part);
         b.result(format!("sum_{i}"), sum);
     }
