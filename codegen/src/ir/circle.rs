@@ -4,7 +4,7 @@ use super::{Builder, Value};
 
 /// sin(πt)/t on |t| ≤ ½ in powers of t²: the interpolant at Chebyshev's nodes, 1e-8 off.
 const SINE: [f32; 5] = [
-    3.141_592_6,
+    std::f32::consts::PI,
     -5.167_71,
     2.550_077_4,
     -0.598_290_4,

@@ -89,10 +89,9 @@ impl Module {
             for (inst, _) in function.insts.iter().zip(&own.insts).filter(|(_, r)| **r) {
                 if let Inst::Result(of, place) = inst
                     && let Inst::Fold { function: body, .. } = function.inst(*of)
+                    && let Some(result) = wanted[body.index()].get_mut(*place as usize)
                 {
-                    if let Some(result) = wanted[body.index()].get_mut(*place as usize) {
-                        *result = true;
-                    }
+                    *result = true;
                 }
             }
             read.push(own);

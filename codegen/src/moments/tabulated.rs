@@ -410,7 +410,7 @@ mod tests {
     fn levels_start_where_the_others_end() {
         let mut first = 0;
         for level in 0..LEVELS {
-            let last = SAMPLES / 4 >> (level / 2);
+            let last = (SAMPLES / 4) >> (level / 2);
             assert_eq!(texels(level), last + 1);
             assert_eq!(first, SAMPLES - 4 * last + level + level % 2 * last);
             first += texels(level);
