@@ -55,7 +55,8 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "Against dense truth, box footprints of 2² to 128² texels of a 512² example: the \
             local standard deviation is off by at most 0.03 of itself on average where waves are 100 \
             texels long, and by 0.07 where they are 20; the mean to 32² by at most 0.06 of the error of the \
-            nearest mip. Gaussian footprints, round or 8:1: 0.08 and 0.12, the mean by 0.05 of the standard deviation. Held by `cargo bench -p mipless-tests --bench \
+            nearest mip. Gaussian footprints, round or 8:1: the deviation by at most 0.12 of itself, the \
+            mean by 0.1 of the deviation (1 to 6 texels; 0.05 elsewhere). Held by `cargo bench -p mipless-tests --bench \
             byexample` and `nodes/tests/picture.rs`. Footprints more than 6 times as long as wide \
             are taken for wider.",
         references: "Heitz & Neyret 2018, *High-Performance By-Example Noise using a Histogram-Preserving \

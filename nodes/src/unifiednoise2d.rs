@@ -28,8 +28,11 @@ static SPEC: NodeSpec = NodeSpec {
             0), each as its own page says; out = outmin + raw · (outmax − outmin), limited to [outmin, \
             outmax] where clampoutput. MaterialX numbers the types from 0 to 3; here they have \
             names, `jitter` moves Worley's points alone, and `seed` selects the noise.",
-        statistics: "Those of the noise that is chosen; the limits are a clamp in closed form, which takes \
-            half of a fractal noise away unless clampoutput is off.",
+        statistics: "Those of the noise that is chosen, with its spectrum. Before outmin and outmax: mean ½ \
+            and standard deviation 1/8 (`perlin`), mean 0 and standard deviation ¼ √Σ diminish²ᵏ \
+            (`fractal`), mean ½ and variance 1/12 (`cell`), those of `worleynoise2d` (`worley`). The \
+            range is outmin to outmax: a clamp in closed form, which takes half of a fractal noise away; \
+            it is that of the noise where clampoutput is off.",
         accuracy: "That of `noise2d`, `cellnoise2d`, `worleynoise2d` and `fractal2d`, whose code it shares. \
             Held by `nodes/src/tests/channel.rs`.",
         references: "MaterialX 1.39 specification, node `unifiednoise2d`. Perlin 2002, *Improving Noise*; \
