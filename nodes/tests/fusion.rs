@@ -131,3 +131,51 @@ fn short_ramps_have_no_table_and_long_ones_a_small_one() {
     let bytes = ramp(12);
     assert!(bytes > 0 && bytes <= 10_000, "{bytes}");
 }
+
+#[test]
+fn long_ramps_of_colours_compile_by_every_method() {
+    let catalogue = mipless_nodes::catalogue();
+    let specs: Vec<_> = catalogue.iter().map(|def| def.spec).collect();
+    for interpolation in ["constant", "linear", "smooth", "cubic"] {
+        let stops: Vec<String> = (0..128)
+            .map(|i| {
+                let channel = |k: i32| f64::from(i * k % 11) / 10.0;
+                let [r, g, b] = [3, 5, 7].map(channel);
+                format!(
+                    r#"{{"at":{},"value":[{r},{g},{b}]}}"#,
+                    f64::from(i) / 16.0 - 4.0
+                )
+            })
+            .collect();
+        let nodes = format!(
+            r#""o":{{"type":"colorramp","inputs":{{"in":{{"node":"n0"}},"interpolation":"{interpolation}","stops":[{}]}}}}"#,
+            stops.join(",")
+        );
+        let loaded = load(&graph(&nodes), &specs);
+        let graph = loaded
+            .graph
+            .unwrap_or_else(|| panic!("{:?}", loaded.diagnostics));
+        let checked = check(graph, &CheckOptions::default()).expect("checks");
+        for method in [Method::Point, Method::Ensemble, Method::Auto] {
+            let options = Options {
+                method,
+                ..Options::default()
+            };
+            let program = compile(&checked, catalogue, &options);
+            let footprint = Footprint {
+                uv: [0.3, 0.4],
+                du: [0.01, 0.0],
+                dv: [0.0, 0.01],
+                ..Footprint::default()
+            };
+            let color = eval_program::<f32>(&program, &[footprint], &[]);
+            for channel in &color {
+                assert!(
+                    (-0.1..=1.1).contains(&channel[0]),
+                    "{interpolation} {method}: {}",
+                    channel[0]
+                );
+            }
+        }
+    }
+}

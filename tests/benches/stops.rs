@@ -23,7 +23,7 @@ const SIDES: [u32; 2] = [1024, 128];
 /// What evaluates.
 enum Machine {
     Cpu { bare: f64 },
-    Device { gpu: Gpu, bare: Pipeline },
+    Device { gpu: Box<Gpu>, bare: Box<Pipeline> },
 }
 
 impl Machine {
@@ -32,9 +32,9 @@ impl Machine {
         if !device {
             return Self::Cpu { bare: time(&bare) };
         }
-        let gpu = Gpu::new(AdapterChoice::Any).expect("a graphics device");
+        let gpu = Box::new(Gpu::new(AdapterChoice::Any).expect("a graphics device"));
         println!("{:?}\n", gpu.report());
-        let bare = pipeline(&gpu, &bare);
+        let bare = Box::new(pipeline(&gpu, &bare));
         Self::Device { gpu, bare }
     }
 

@@ -29,9 +29,6 @@ const SHARED: u32 = 1 << 31;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Argument(u8);
 
-/// The most arguments of a shared function.
-const MOST_ARGUMENTS: usize = 128;
-
 impl Argument {
     const ZERO: Self = Self(4);
     const ONE: Self = Self(5);
@@ -237,18 +234,16 @@ impl Builder {
         arguments: &[(&'static str, Value)],
         build: impl FnOnce(&mut Self, &[Value]) -> Vec<(&'static str, Value)>,
     ) -> SmallVec<[Value; 16]> {
-        let mut pattern = [Argument(0); MOST_ARGUMENTS];
-        let pattern = &mut pattern[..arguments.len()];
-        for (argument, &(_, value)) in pattern.iter_mut().zip(arguments) {
-            *argument = Argument::of(self, value);
-        }
-        let hash = Key::hash_of(&name, variant, literals, pattern);
+        let pattern: SmallVec<[Argument; 128]> = (arguments.iter())
+            .map(|&(_, value)| Argument::of(self, value))
+            .collect();
+        let hash = Key::hash_of(&name, variant, literals, &pattern);
         let library = self
             .library
             .as_ref()
             .expect("the caller has seen a library");
         let is_it = |placed: &Placed| {
-            placed.hash == hash && placed.rule.key.is(&name, variant, literals, pattern)
+            placed.hash == hash && placed.rule.key.is(&name, variant, literals, &pattern)
         };
         let known = library.0.borrow().known.find(hash, is_it).cloned();
         let Placed { rule, function, .. } = known.unwrap_or_else(|| {
