@@ -24,8 +24,8 @@ static SPEC: NodeSpec = NodeSpec {
             q = (2πs/λ)²: the smaller is taken.",
         accuracy: "The mean is as exact as the filter of what is upstream: 2e-3 for patterns, 0.01 for a \
             noise. A noise through a step is blurred as well as `quad` filters it: the means of its \
-            blurred values are within 0.05 of their filtered ones (root mean square 0.02). The standard \
-            deviation is within 0.08 for noises and up to 0.28 too large for patterns. Held by `nodes/src/pattern/tests/upstream.rs` against dense sums.",
+            blurred values are within 0.055 of their filtered ones (root mean square 0.02). The standard \
+            deviation is within 0.11 for noises and up to 0.28 too large for patterns. Held by `nodes/src/pattern/tests/upstream.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (Gaussians \
             under convolution). Mehler 1866, *Ueber die Entwicklung einer Function von beliebig vielen \
             Variablen nach Laplaceschen Functionen höherer Ordnung*. MaterialX 1.39 specification, node \

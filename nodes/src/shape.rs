@@ -24,7 +24,7 @@ static SPEC: NodeSpec = NodeSpec {
             triangles seen from the mean: exact for any covariance, for stars too. Variance P(1 − \
             P). An edge adds the difference of a ramp and a step of the distance as a Gaussian, as in \
             `circle`. Of varying parameters the means are used.",
-        accuracy: "The mean is within 1e-4 for any footprint; with an edge of half the radius within 0.022 for polygons and 0.05 for stars, at their corners. Held by `nodes/src/pattern/tests.rs` against \
+        accuracy: "The mean is within 1e-4 for any footprint; with an edge of half the radius within 0.004 for polygons, 0.03 at 8:1, and 0.045 for stars, at their corners. Held by `nodes/src/pattern/tests.rs` against \
             dense sums.",
         references: "Owen 1956, *Tables for Computing Bivariate Normal Probabilities*; Nicholson 1943, *The \
             Probability Integral for Two Variables* (the measure of a right triangle).",

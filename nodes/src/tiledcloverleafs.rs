@@ -25,7 +25,7 @@ static SPEC: NodeSpec = NodeSpec {
             Fourier series of the lattice by e^{−2π²kᵀΣk}, exact for any covariance; those that are \
             thinner are widened first, gradually from a length of 0.9 cells. Variance P(1 − P). Over \
             a large footprint the mean is the share of the plane that the figures cover.",
-        accuracy: "The mean is within 2e-3, but for footprints that are longer than 0.9 cells and thinner \
+        accuracy: "The mean is within 3e-3, but for footprints that are longer than 0.9 cells and thinner \
             than 0.16: these are blurred across, which is within 0.01 at 8:1. Held by \
             `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Owen 1956, *Tables for Computing Bivariate Normal Probabilities*. Heckbert 1989, \

@@ -128,7 +128,7 @@ pub(crate) fn sharp(lower: &mut Lower<'_>, measure: Measure, spread: &Spread) ->
         rest: zero,
     };
     if mode.spreads() {
-        field.rest = rest_of_two(b, &field, spread);
+        field.rest = rest_of_two(b, &mut field, spread);
     }
     field
 }

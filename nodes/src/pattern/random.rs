@@ -101,7 +101,7 @@ pub(crate) fn numbered(
         let square = b.add(sums[6], lost);
         let own = b.square(centred);
         let variance = b.sub(square, own);
-        field.rest = rest(b, &field, &spread, variance);
+        field.rest = rest(b, &mut field, &spread, variance);
     }
     field.at(lower, position).with_range([0.0, 1.0])
 }

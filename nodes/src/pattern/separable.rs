@@ -162,8 +162,8 @@ pub(crate) fn filtered(
     let mut field = Field { mean, ..field };
     if mode.spreads() {
         field.rest = match (square, &pattern.soft) {
-            (Some(square), Some(soft)) => rest_of_ramps(b, &field, &spread, square, soft.width),
-            _ => rest_of_two(b, &field, &spread),
+            (Some(square), Some(soft)) => rest_of_ramps(b, &mut field, &spread, square, soft.width),
+            _ => rest_of_two(b, &mut field, &spread),
         };
     }
     let signal = field.at(lower, position);
@@ -187,29 +187,39 @@ pub(crate) fn finished_signal(lower: &mut Lower<'_>, signal: Signal, sharp: bool
 }
 
 /// What the response of a field to the footprint leaves of a variance: Var − |g|² − ½‖H‖², at least 0.
-pub(crate) fn rest(b: &mut Builder, field: &Field, spread: &Spread, variance: Value) -> Value {
+/// A Hessian that claims more than its share, as one of a truncated series may, is made smaller.
+pub(crate) fn rest(b: &mut Builder, field: &mut Field, spread: &Spread, variance: Value) -> Value {
     let [xx, xy, yy] = spread.covariance;
     let [dx, dy] = field.gradient;
     let (px, py) = (b.dot(&[xx, xy], &[dx, dy]), b.dot(&[xy, yy], &[dx, dy]));
     let linear = b.dot(&[dx, dy], &[px, py]);
-    let mut rest = b.sub(variance, linear);
-    let [h11, h12, h22] = field.hessian;
-    if !(b.is_zero(h11) && b.is_zero(h12) && b.is_zero(h22)) {
-        // ½ tr (HΣ)².
-        let (a, d) = (b.dot(&[h11, h12], &[xx, xy]), b.dot(&[h12, h22], &[xy, yy]));
-        let (p, q) = (b.dot(&[h11, h12], &[xy, yy]), b.dot(&[h12, h22], &[xx, xy]));
-        let (a, d, pq) = (b.square(a), b.square(d), b.mul(p, q));
-        let trace = b.add(a, d);
-        let trace = b.scale(trace, 0.5);
-        let trace = b.add(trace, pq);
-        rest = b.sub(rest, trace);
-    }
+    let rest = b.sub(variance, linear);
     let zero = b.f32(0.0);
+    let rest = b.max(rest, zero);
+    let [h11, h12, h22] = field.hessian;
+    if b.is_zero(h11) && b.is_zero(h12) && b.is_zero(h22) {
+        return rest;
+    }
+    // ½ tr (HΣ)².
+    let (a, d) = (b.dot(&[h11, h12], &[xx, xy]), b.dot(&[h12, h22], &[xy, yy]));
+    let (p, q) = (b.dot(&[h11, h12], &[xy, yy]), b.dot(&[h12, h22], &[xx, xy]));
+    let (a, d, pq) = (b.square(a), b.square(d), b.mul(p, q));
+    let trace = b.add(a, d);
+    let trace = b.scale(trace, 0.5);
+    let trace = b.add(trace, pq);
+    let least = b.f32(1e-30);
+    let claimed = b.max(trace, least);
+    let share = b.div(rest, claimed);
+    let one = b.f32(1.0);
+    let share = b.min(share, one);
+    let by = b.sqrt(share);
+    field.hessian = field.hessian.map(|h| b.mul(h, by));
+    let rest = b.sub(rest, trace);
     b.max(rest, zero)
 }
 
 /// The same of a pattern that is 0 or 1, whose variance is P(1 − P).
-pub(crate) fn rest_of_two(b: &mut Builder, field: &Field, spread: &Spread) -> Value {
+pub(crate) fn rest_of_two(b: &mut Builder, field: &mut Field, spread: &Spread) -> Value {
     let one = b.f32(1.0);
     let other = b.sub(one, field.mean);
     let variance = b.mul(field.mean, other);
@@ -220,7 +230,7 @@ pub(crate) fn rest_of_two(b: &mut Builder, field: &Field, spread: &Spread) -> Va
 /// response is left while the footprint lies within them.
 fn rest_of_ramps(
     b: &mut Builder,
-    field: &Field,
+    field: &mut Field,
     spread: &Spread,
     square: Value,
     [wide, high]: [Value; 2],

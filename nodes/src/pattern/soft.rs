@@ -242,7 +242,7 @@ pub(crate) fn field(
         let second = b.add(value, beyond);
         let square = b.square(field.mean);
         let total = b.sub(second, square);
-        let left = rest(b, &field, spread, total);
+        let left = rest(b, &mut field, spread, total);
         let wide = b.square(width);
         let wide = b.scale(wide, 0.16);
         let sum = b.add(variance, wide);
