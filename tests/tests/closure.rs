@@ -21,7 +21,7 @@ fn predicted(texture: &Texture) -> f64 {
 /// Measured: the RMS over pixels, channels and [`PIXELS`] of values limited to [0, 1].
 fn measured(texture: &Texture, wavelength: f64) -> f64 {
     let (count, samples) = if asked("MIPLESS_LONG") {
-        (2000, 1024)
+        (400, 512)
     } else {
         (150, 256)
     };
