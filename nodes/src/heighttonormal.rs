@@ -37,8 +37,8 @@ static SPEC: NodeSpec = NodeSpec {
             mean square): 0.033 (0.006) for a noise whose slopes have a standard deviation of 0.6, 0.035 \
             (0.009) for one of three octaves, 0.008 (0.002) for a sine wave of slopes up to 0.5, 0.09 \
             (0.018) for bricks with bevels of 51 degrees, whose slopes are no Gaussian. The standard deviation is within 0.11, for such bricks within 0.19. Where \
-            several sources shape the height, the coarsest alone is asked, and none knows its wavelength \
-            beyond 10⁴ of its cells. A height with jumps \
+            several sources shape the height, the coarsest alone is asked; footprints beyond 64 uv are \
+            taken for such. A height with jumps \
             has no slope there: its edges should be ramps. Held by `nodes/src/pattern/tests/upstream.rs` \
             against dense sums.",
         references: "Olano & Baker 2010, *LEAN Mapping* (slopes have means and variances, normals do \

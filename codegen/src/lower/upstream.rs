@@ -46,6 +46,10 @@ pub struct Upstream {
     pub wavelengths: Value,
 }
 
+/// The largest standard deviation of a footprint, in uv. Beyond it a texture has its far field, and
+/// sources of up to 150 cells per uv still tell their wavelengths (they know 10⁴ cells).
+const LARGEST: f32 = 64.0;
+
 impl Lower<'_> {
     /// The pixel's footprint, or that of a point, convolved with a round Gaussian of this variance
     /// (in uv², above 0).
@@ -64,7 +68,13 @@ impl Lower<'_> {
             })
         });
         let [u, v] = own;
-        let (of_u, of_v, both) = (b.dot(&u, &u), b.dot(&v, &v), b.dot(&u, &v));
+        // Over a larger footprint nothing changes but numbers that sources can no longer follow.
+        let (of_u, of_v) = (b.dot(&u, &u), b.dot(&v, &v));
+        let (size, largest) = (b.add(of_u, of_v), b.f32(LARGEST * LARGEST));
+        let size = b.max(size, largest);
+        let by = b.div(largest, size);
+        let (of_u, of_v, both) = (b.mul(of_u, by), b.mul(of_v, by), b.dot(&u, &v));
+        let both = b.mul(both, by);
         let first = b.add(of_u, variance);
         let first = b.sqrt(first);
         let one = b.f32(1.0);
@@ -73,6 +83,7 @@ impl Lower<'_> {
         // det Σ = (det A)² + v (|u|² + |v|²) + v², all of which are positive.
         let (p, q) = (b.mul(u[0], v[1]), b.mul(u[1], v[0]));
         let area = b.sub(p, q);
+        let area = b.mul(area, by);
         let area = b.mul(area, inverse);
         let area = b.square(area);
         let total = b.add(of_u, of_v);
