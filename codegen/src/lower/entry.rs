@@ -3,7 +3,7 @@
 use super::symbols::reads_position;
 use super::{Arguments, Compiler, Lower, Method, ahead, sampling};
 use crate::ir::{Builder, FOOTPRINT, FunctionRef, Module, Type as Scalar, Value};
-use crate::moments::Mode;
+use crate::moments::{Branch, Mode};
 use mipless_graph::Graph;
 use std::ops::Range;
 
@@ -209,10 +209,10 @@ fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
     };
     let quad = (ahead.and_then(|ahead| ahead.join(compiler, module)))
         .unwrap_or_else(|| graph_function(compiler, module, other.0, other.1).0);
-    let mut branches = Vec::new();
-    for (function, suffix) in [(&local, "by_local"), (&quad, "by_quad")] {
-        branches.push(branch(compiler, module, function, suffix));
-    }
+    let branches = [(&local, "by_local"), (&quad, "by_quad")].map(|(function, suffix)| {
+        let declare = |b: &mut Builder| Arguments::declare(b, compiler.graph).all();
+        Branch::new(module, suffix, function, declare)
+    });
     let mut b = Builder::new(name, "The texture over a footprint.");
     let arguments = Arguments::declare(&mut b, compiler.graph);
     let arguments = finite(&mut b, compiler.graph, &arguments);
@@ -222,7 +222,7 @@ fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
     let mut state = vec![none; local.results.len()];
     for (branch, [yes, no]) in branches.iter().zip([[zero, one], [one, zero]]) {
         let count = b.select(bends, yes, no);
-        state = b.fold(branch, count, &state, &arguments);
+        state = b.fold(&branch.0, count, &state, &arguments);
     }
     finish(module, b, &local, &state);
 }
@@ -241,24 +241,4 @@ fn within_band(b: &mut Builder, footprints: &[Value]) -> Value {
         any = b.or(any, within);
     }
     any
-}
-
-/// A function as the body of a fold of 0 or 1 turns: the state is replaced by its results.
-fn branch(
-    compiler: &Compiler<'_>,
-    module: &mut Module,
-    function: &FunctionRef,
-    name: &str,
-) -> FunctionRef {
-    let mut b = Builder::new(name, "A branch: the state becomes the texture.");
-    b.param("index", Scalar::U32);
-    for i in 0..function.results.len() {
-        b.param_f32(format!("state_{i}"));
-    }
-    let arguments = Arguments::declare(&mut b, compiler.graph);
-    let results = b.call(function, &arguments.all());
-    for (i, &value) in results.iter().enumerate() {
-        b.result(format!("state_{i}"), value);
-    }
-    b.finish(module)
 }

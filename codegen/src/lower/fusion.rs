@@ -226,7 +226,7 @@ impl Lower<'_> {
             function(compiler, module, index, entry)
         });
         let branch = Branch(self.function(&format!("fused {index} branch"), |module| {
-            Branch::new(module, &name, &function, 1).0
+            Branch::of_numbers(module, &name, &function, 1).0
         }));
         (closed.iter().enumerate())
             .map(|(i, signal)| {

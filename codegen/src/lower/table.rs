@@ -105,7 +105,7 @@ impl Lower<'_> {
         let value = b.add(from, part);
         b.result("value", value);
         let of = b.finish(self.module);
-        let branch = Branch::new(self.module, &identifier(name), &of, 1);
+        let branch = Branch::of_numbers(self.module, &identifier(name), &of, 1);
         let samples: Samples = Arc::new(LazyLock::new(Box::new(move || {
             let points = sample_points(domain).into_iter();
             let values = points.map(|x| function(x.into())).collect();

@@ -7,28 +7,37 @@ use crate::ir::{Builder, FunctionRef, Module, Type, Value};
 pub(crate) struct Branch(pub(crate) FunctionRef);
 
 impl Branch {
-    /// Of a function that takes so many numbers and gives numbers.
+    /// Of a function that gives numbers; `declare` adds its parameters and gives them.
     pub(crate) fn new(
+        module: &mut Module,
+        name: impl Into<String>,
+        function: &FunctionRef,
+        declare: impl FnOnce(&mut Builder) -> Vec<Value>,
+    ) -> Self {
+        let mut b = Builder::new(name, "The state becomes the function's value.");
+        b.param("index", Type::U32);
+        for i in 0..function.results.len() {
+            b.param_f32(format!("state_{i}"));
+        }
+        let arguments = declare(&mut b);
+        for (i, &value) in b.call(function, &arguments).iter().enumerate() {
+            b.result(format!("state_{i}"), value);
+        }
+        Self(b.finish(module))
+    }
+
+    /// Of a function that takes so many numbers.
+    pub(crate) fn of_numbers(
         module: &mut Module,
         name: &str,
         function: &FunctionRef,
         arguments: usize,
     ) -> Self {
-        let mut b = Builder::new(
-            format!("{name}_point"),
-            "The state becomes the function's value at a point.",
-        );
-        b.param("index", Type::U32);
-        for i in 0..function.results.len() {
-            b.param_f32(format!("state_{i}"));
-        }
-        let arguments: Vec<Value> = (0..arguments)
-            .map(|i| b.param_f32(format!("x_{i}")))
-            .collect();
-        for (i, &value) in b.call(function, &arguments).iter().enumerate() {
-            b.result(format!("state_{i}"), value);
-        }
-        Self(b.finish(module))
+        Self::new(module, format!("{name}_point"), function, |b| {
+            (0..arguments)
+                .map(|i| b.param_f32(format!("x_{i}")))
+                .collect()
+        })
     }
 
     /// The function's results where `needed` holds, else 0.

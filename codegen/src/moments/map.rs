@@ -147,7 +147,7 @@ impl Map {
             read::bilinear(module, &format!("{name}_{suffix}_at"), tables[i], &packing)
         };
         let readers = [of(0), of(1), of(2), of(3)];
-        let branch = Branch::new(module, name, &function, 2);
+        let branch = Branch::of_numbers(module, name, &function, 2);
         Self {
             function,
             branch,

@@ -12,11 +12,11 @@ mod point;
 mod row;
 
 use super::field::{Field, Spread};
-use super::hash::NEXT_OCTAVE;
-use address::{Address, wrapped_cell};
+use super::octave::Octave;
+use address::Address;
 pub(super) use filtered::derivatives;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Type, Value};
+use mipless_codegen::ir::{Builder, FunctionRef, Value};
 use mipless_codegen::moments::{Mode, Signal};
 
 /// a: the width of the kernel, in cells.
@@ -251,77 +251,8 @@ pub(crate) fn filtered(
     octaves.sum(lower, &octave, (position, seed), &captures, left)
 }
 
-/// The part of an octave's state that goes from octave to octave: position, frequency, amplitude
-/// and seed.
-pub(super) struct Octave {
-    pub(super) cells: [Value; 2],
-    pub(super) fractions: [Value; 2],
-    pub(super) scale: Value,
-    pub(super) amplitude: Value,
-    pub(super) seed: Value,
-    /// In cells of this octave.
-    pub(super) period: Option<Value>,
-}
-
-impl Octave {
-    pub(super) fn declare(b: &mut Builder, octaves: Octaves) -> Self {
-        let cell_x = b.param("cell_x", Type::I32);
-        let x = b.param_f32("x");
-        let cell_y = b.param("cell_y", Type::I32);
-        let y = b.param_f32("y");
-        let mut state = Self {
-            cells: [cell_x, cell_y],
-            fractions: [x, y],
-            scale: b.param_f32("scale"),
-            amplitude: b.param_f32("amplitude"),
-            seed: b.param("seed", Type::U32),
-            period: octaves.tiles().then(|| b.param_f32("period")),
-        };
-        if let Some(period) = state.period {
-            // What repeats must be the same numbers from here on.
-            state.cells = state.cells.map(|cell| {
-                let cell = wrapped_cell(b, cell, period);
-                b.trunc_i(cell)
-            });
-        }
-        state
-    }
-
+impl Octave<2> {
     fn address(&self, b: &mut Builder) -> Address {
         Address::new(b, self.cells, self.seed, self.period)
-    }
-
-    /// The state of the next octave, as results.
-    pub(super) fn advance(&self, b: &mut Builder, octaves: Octaves) {
-        let lacunarity = b.f32(octaves.lacunarity);
-        // Octaves must not share lattice points, where the variance of all is largest.
-        let shift = 0.381_966 / octaves.lacunarity;
-        for (i, name) in ["x", "y"].iter().enumerate() {
-            let shifted = b.offset(self.fractions[i], shift);
-            let start = Signal::certain(b, shifted);
-            let start = Signal {
-                cell: Some(self.cells[i]),
-                ..start
-            };
-            let next = start.scale(b, lacunarity);
-            b.result(
-                format!("cell_{name}"),
-                next.cell.expect("a position keeps its cell"),
-            );
-            b.result(*name, next.mean);
-        }
-        let scale = b.scale(self.scale, octaves.lacunarity);
-        let amplitude = b.scale(self.amplitude, octaves.diminish);
-        let step = b.u32(NEXT_OCTAVE);
-        let seed = b.add_u(self.seed, step);
-        b.result("scale", scale);
-        b.result("amplitude", amplitude);
-        b.result("seed", seed);
-        if let Some(period) = self.period {
-            let next = b.scale(period, octaves.lacunarity);
-            let next = b.offset(next, 0.5);
-            let next = b.floor(next);
-            b.result("period", next);
-        }
     }
 }

@@ -21,7 +21,8 @@ mod window;
 
 use super::field::{Field, Spread};
 use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
-use super::lattice::{Octave, Octaves, parts};
+use super::lattice::{Octaves, parts};
+use super::octave::Octave;
 use super::remainder::{remainder, share};
 use energy::{Footprint, energies};
 use fit::{Fit, Shape};

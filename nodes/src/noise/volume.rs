@@ -14,7 +14,6 @@ mod points;
 mod quadrupole;
 mod quintic;
 mod spread;
-mod state;
 
 use super::lattice::Octaves;
 use super::perlin::fit::SPACE;

@@ -2,7 +2,8 @@
 
 use super::energy::Energy;
 use super::row::{Frame, orders, row};
-use super::{MOST_ROWS, Octave, Octaves, WIDTH};
+use super::{MOST_ROWS, Octaves, WIDTH};
+use crate::noise::octave::Octave;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 

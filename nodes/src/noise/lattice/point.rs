@@ -1,8 +1,9 @@
 //! One octave of the unfiltered noise: the nearest 3×3 kernels.
 
 use super::address::Address;
-use super::{Octave, Octaves, WIDTH};
+use super::{Octaves, WIDTH};
 use crate::noise::hash::direction;
+use crate::noise::octave::Octave;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// The offsets of a position to the three nearest columns, and where they start.

@@ -1,7 +1,8 @@
 //! From the columns and rows around a position to the hashes of their lattice points.
 
 use crate::noise::hash::{COLUMN_FACTOR, ROW_FACTOR, corner};
-use crate::noise::lattice::{Octave, address::wrapped};
+use crate::noise::lattice::address::wrapped;
+use crate::noise::octave::Octave;
 use mipless_codegen::ir::{Builder, Type, Value};
 
 const FACTORS: [u32; 2] = [COLUMN_FACTOR, ROW_FACTOR];
@@ -16,7 +17,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn of(state: &Octave) -> Self {
+    pub(super) fn of(state: &Octave<2>) -> Self {
         Self {
             cells: state.cells,
             seed: state.seed,

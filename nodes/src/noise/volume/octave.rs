@@ -3,9 +3,9 @@
 use super::kernel::{Window, slice, start};
 use super::points::Points;
 use super::spread::{Inverse, Spread};
-use super::state::State;
 use super::{Kind, NAMES, PAIRS, parts, place, quadrupole, quintic};
 use crate::noise::lattice::Octaves;
+use crate::noise::octave::Octave;
 use crate::noise::perlin::HANDOVER;
 use crate::noise::remainder::{remainder, share};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -28,7 +28,7 @@ pub(super) fn point(module: &mut Module, kind: Kind, octaves: Octaves) -> Functi
     let b = &mut builder;
     b.param("index", Type::U32);
     let sum = b.param_f32("mean");
-    let state = State::declare(b, octaves);
+    let state = Octave::declare(b, octaves);
     let points = Points::of(b, &state);
     let kernels = match near {
         Some(near) => near.sum(b, points, state.fractions),
@@ -116,7 +116,7 @@ pub(super) fn filtered(
         .map(|name| b.param_f32(*name))
         .collect();
     let rest = mode.spreads().then(|| b.param_f32("rest"));
-    let state = State::declare(b, octaves);
+    let state = Octave::declare(b, octaves);
     let spread = Spread::declare(b).scaled(b, state.scale);
     let inverse = spread.inverse(b);
     let energy = kind.energy(b, &spread, &inverse);

@@ -1,8 +1,8 @@
 //! From steps along the axes to the keys of lattice points in space, wrapped where the lattice
 //! tiles.
 
-use super::state::State;
 use crate::noise::lattice::address::wrapped;
+use crate::noise::octave::Octave;
 use mipless_codegen::ir::{Builder, Type, Value};
 
 /// What a step along x, y and z adds to the key of a lattice point.
@@ -25,7 +25,7 @@ struct Tile {
 
 impl Points {
     /// The lattice point at the position's cell.
-    pub(super) fn of(b: &mut Builder, state: &State) -> Self {
+    pub(super) fn of(b: &mut Builder, state: &Octave<3>) -> Self {
         if let Some(period) = state.period {
             let origin = state.cells.map(|cell| b.float_i(cell));
             return Self {

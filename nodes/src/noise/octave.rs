@@ -1,15 +1,15 @@
 //! The part of an octave's state that goes from octave to octave.
 
-use crate::noise::hash::NEXT_OCTAVE;
-use crate::noise::lattice::Octaves;
-use crate::noise::lattice::address::wrapped_cell;
+use super::hash::NEXT_OCTAVE;
+use super::lattice::Octaves;
+use super::lattice::address::wrapped_cell;
 use mipless_codegen::ir::{Builder, Type, Value};
 use mipless_codegen::moments::Signal;
 
-/// Position, frequency, amplitude and seed.
-pub(super) struct State {
-    pub(super) cells: [Value; 3],
-    pub(super) fractions: [Value; 3],
+/// Position (of as many axes), frequency, amplitude and seed.
+pub(super) struct Octave<const AXES: usize> {
+    pub(super) cells: [Value; AXES],
+    pub(super) fractions: [Value; AXES],
     pub(super) scale: Value,
     pub(super) amplitude: Value,
     pub(super) seed: Value,
@@ -17,9 +17,12 @@ pub(super) struct State {
     pub(super) period: Option<Value>,
 }
 
-impl State {
+const NAMES: [&str; 3] = ["x", "y", "z"];
+
+impl<const AXES: usize> Octave<AXES> {
     pub(super) fn declare(b: &mut Builder, octaves: Octaves) -> Self {
-        let places = ["x", "y", "z"].map(|name| {
+        let places: [_; AXES] = std::array::from_fn(|axis| {
+            let name = NAMES[axis];
             let cell = b.param(format!("cell_{name}"), Type::I32);
             (cell, b.param_f32(name))
         });
@@ -44,7 +47,7 @@ impl State {
     /// The state of the next octave, as results.
     pub(super) fn advance(&self, b: &mut Builder, octaves: Octaves) {
         let lacunarity = b.f32(octaves.lacunarity);
-        for (i, name) in ["x", "y", "z"].into_iter().enumerate() {
+        for (i, name) in NAMES[..AXES].iter().copied().enumerate() {
             // Octaves must not share lattice points, where the variance of all is largest.
             let shifted = b.offset(self.fractions[i], 0.381_966 / octaves.lacunarity);
             let start = Signal {
