@@ -63,6 +63,7 @@ struct Times {
     point: f64,
     /// Multiples of `point`.
     local: f64,
+    quad: f64,
     auto: f64,
 }
 
@@ -166,12 +167,14 @@ fn measure(graph: &Graph, pixel: f64, quick: bool) -> Row {
     // Two independent truths differ by √2 of the error of one, and their mean has 1/√2 of it.
     let floor = 0.5 * rms(&truths[0], &truths[1]);
     let times = (!quick).then(|| {
-        let programs = [Method::Point, Method::Local, Method::Auto].map(|m| compile(m, 0));
-        let [point, local, auto] = times(&programs, &footprints);
+        let programs = [Method::Point, Method::Local, Method::Quad, Method::Auto];
+        let programs = programs.map(|m| compile(m, 0));
+        let [point, local, quad, auto] = times(&programs, &footprints);
         let pixel = 1e9 / footprints.len() as f64;
         Times {
             point: point * pixel,
             local: local / point,
+            quad: quad / point,
             auto: auto / point,
         }
     });
@@ -248,8 +251,8 @@ fn times<const N: usize>(programs: &[Program; N], footprints: &[Footprint]) -> [
 fn header() {
     print!("| pixel, wavelengths | floor |");
     METHODS.iter().for_each(|method| print!(" {method} |"));
-    println!(" point, ns | local/point | auto/point |");
-    println!("|{}", "---:|".repeat(METHODS.len() + 5));
+    println!(" point, ns | local/point | quad/point | auto/point |");
+    println!("|{}", "---:|".repeat(METHODS.len() + 6));
 }
 
 fn print_row(row: &Row) {
@@ -261,8 +264,11 @@ fn print_row(row: &Row) {
     print!("| {pixel} | {:.4} |", row.floor);
     row.errors.iter().for_each(|error| print!(" {error:.4} |"));
     match &row.times {
-        Some(t) => println!(" {:.0} | {:.2} | {:.2} |", t.point, t.local, t.auto),
-        None => println!(" – | – | – |"),
+        Some(t) => println!(
+            " {:.0} | {:.2} | {:.2} | {:.2} |",
+            t.point, t.local, t.quad, t.auto
+        ),
+        None => println!(" – | – | – | – |"),
     }
 }
 
@@ -288,7 +294,8 @@ fn summary(rows: &[(&str, Row)], quick: bool) -> ExitCode {
         (!all.is_empty()).then(|| median_and_worst(all))
     };
     let local = time(|t| t.local);
-    for (name, found) in [("local", local), ("auto", time(|t| t.auto))] {
+    let others = [("quad", time(|t| t.quad)), ("auto", time(|t| t.auto))];
+    for (name, found) in [("local", local)].into_iter().chain(others) {
         if let Some((median, worst)) = found {
             println!("| time of {name}, relative to point | {median:.2} | {worst:.2} |");
         }
