@@ -114,6 +114,7 @@ fn hold_means(name: &str, json: &str, round: f64, long: f64) {
             let minor = size / f64::sqrt(ratio);
             let found = errors(json, minor, ratio, degrees, &[Method::Local])[0][0];
             let bound = if ratio > 1.0 { long } else { round };
+            println!("{name} {ratio}:1 at {degrees}° at {size}: {found:.4}");
             assert!(
                 found <= bound,
                 "{name} at {size}, {ratio}:1 at {degrees}°: {found}"

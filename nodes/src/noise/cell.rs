@@ -15,10 +15,10 @@ use mipless_codegen::moments::{Mode, Normal, Signal};
 pub(crate) const VARIANCE: f32 = 1.0 / 12.0;
 
 /// How far a window reaches, in standard deviations; weights are normalised to their sum.
-const REACH: f32 = 2.8;
+const REACH: f32 = 2.45;
 
 /// The most rows or columns of a window; footprints that need more fade.
-const MOST: f32 = 24.0;
+const MOST: f32 = 21.0;
 
 /// The number of a cell, in [0, 1), and its hash.
 pub(crate) fn number(
@@ -115,9 +115,8 @@ pub(crate) fn filtered(
     }
 }
 
-/// A window over `count` = ⌈2·REACH·σ⌉ + 1 cells that starts at ⌊m − REACH σ⌋.
-fn window(b: &mut Builder, mean: Value, sd: Value) -> [Value; 2] {
-    let reach = b.scale(sd, REACH);
+/// A window over `count` = ⌈2r⌉ + 1 cells that starts at ⌊m − r⌋.
+fn window(b: &mut Builder, mean: Value, reach: Value) -> [Value; 2] {
     let start = b.sub(mean, reach);
     let start = b.floor(start);
     let minus = b.scale(reach, -2.0);
@@ -225,7 +224,16 @@ fn row(module: &mut Module, period: i32) -> FunctionRef {
     let raised = b.offset(variance, 1e-12);
     let sd_x = b.sqrt(raised);
     let inverse_x = b.div(one, sd_x);
-    let [first, count] = window(&mut b, mean, sd_x);
+    // The cells that count lie within an ellipse.
+    let aside = b.mul(moved, inverse);
+    let aside = b.square(aside);
+    let aside = b.scale(aside, -1.0 / (REACH * REACH));
+    let left = b.add(one, aside);
+    let left = b.max(left, zero);
+    let left = b.sqrt(left);
+    let reach = b.scale(sd_x, REACH);
+    let reach = b.mul(reach, left);
+    let [first, count] = window(&mut b, mean, reach);
     let distance = b.sub(first, mean);
     let n = Normal::at(&mut b, distance, inverse_x);
     let whole = b.trunc_i(place);
@@ -289,7 +297,8 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef
     let determinant = b.mul(eigenvalues[0], eigenvalues[1]);
     let across = b.div(determinant, raised);
     let across = b.min(across, s_xx);
-    let [start, rows] = window(&mut b, y, sd);
+    let reach = b.scale(sd, REACH);
+    let [start, rows] = window(&mut b, y, reach);
     // Windows that would be too large fade.
     let wide = b.sqrt(s_xx);
     let wide = b.max(wide, sd);

@@ -44,11 +44,8 @@ const FADE: [f32; 2] = [0.03, 0.06];
 /// give way to its fit.
 pub(super) const HANDOVER: [f32; 2] = [0.1, 0.16];
 
-/// A kernel is dropped where its envelope is this small against the unfiltered noise: −2 ln 0.004.
-const NEGLIGIBLE_LN: f32 = 11.0;
-
-/// The most lattice rows or columns that are summed; footprints that need more fade.
-const MOST: f32 = 112.0;
+/// A kernel is dropped where its envelope is this small against the unfiltered noise: −2 ln 0.008.
+const NEGLIGIBLE_LN: f32 = 10.3;
 
 /// The sums over kernels, in the order of [`profile::DERIVATIVES`].
 const NAMES: [&str; 6] = ["mean", "dx", "dy", "dxx", "dxy", "dyy"];
@@ -211,13 +208,10 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
 
     let used = b.mul(by_window, window.fade);
     let is_used = b.lt(zero, used);
-    let rows = b.trunc_i(window.rows);
-    let rows = b.cast_u(rows);
+    let [count, rows] = window::count(&mut b, window.rows);
     let rows = b.select(is_used, rows, none);
-    let columns = b.trunc_i(window.columns);
-    let columns = b.cast_u(columns);
-    let start_y = window::start_of(&mut b, state.fractions[1], window.rows);
-    let mut captures = vec![start_y, window.columns, columns, window.shear];
+    let start_y = window::start_of(&mut b, state.fractions[1], count);
+    let mut captures = vec![start_y, window.rows, window.columns, window.shear];
     captures.extend(grid);
     captures.extend(state.fractions);
     captures.extend(window::captures(&window.shape));
@@ -252,7 +246,8 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     b.finish(module)
 }
 
-/// The sum over kernels of the window's fit: how far it reaches, and what is left of it.
+/// The sum over kernels of the window's fit: how far it reaches (rows, and columns of the middle row, as
+/// reals), and what is left of it. What needs more than can be summed fades.
 struct Window {
     shape: Shape<2>,
     /// 1/det T.
@@ -271,7 +266,7 @@ impl Window {
         let determinant = b.scale(footprint.determinant, finer * finer);
         let (shape, inverse) = window::shape(b, covariance, determinant);
         let t_yy = shape.total[1][1];
-        // R² = ln F + 11 in units of T.
+        // R² = ln F + 9.66 in units of T.
         let (tiny, one) = (b.f32(1e-12), b.f32(1.0));
         let energy = b.max(energy, tiny);
         let reach = b.ln(energy);
@@ -286,16 +281,10 @@ impl Window {
         let columns = b.sqrt(ratio);
         let columns = b.mul(columns, reach);
         let needed = b.max(rows, columns);
-        let [rows, columns] = [rows, columns].map(|needed| {
-            // ⌈needed⌉ between 3 and the most.
-            let minus = b.neg(needed);
-            let floor = b.floor(minus);
-            let up = b.neg(floor);
-            b.clamp(up, 3.0, MOST)
-        });
         let amplitude = b.sqrt(energy);
         let by_amplitude = share(b, amplitude, FADE[0], FADE[1]);
-        let by_reach = share(b, needed, MOST, MOST * 0.8);
+        let most = window::COUNTS[1];
+        let by_reach = share(b, needed, most, most * 0.8);
         Self {
             fade: b.mul(by_amplitude, by_reach),
             shear: b.div(covariance[1], t_yy),

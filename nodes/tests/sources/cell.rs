@@ -50,6 +50,11 @@ fn cells_are_filtered_exactly_along_the_axes() {
             (0.1 * size).max(0.02),
             &[Method::Local],
         )[0];
+        println!(
+            "{size}, {ratio}:1 at {degrees}: {:.4} SD, {:.4}",
+            found.mean / SD,
+            found.deviation
+        );
         assert!(
             found.mean < mean * SD,
             "{size}, {ratio}:1 at {degrees}: {found:?}"

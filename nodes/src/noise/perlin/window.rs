@@ -111,6 +111,19 @@ fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionR
     b.finish(module)
 }
 
+/// The fewest and the most lattice points of a row, and rows.
+pub(super) const COUNTS: [f32; 2] = [2.0, 112.0];
+
+/// ⌈needed⌉ within [`COUNTS`], a real and a u32.
+pub(super) fn count(b: &mut Builder, needed: Value) -> [Value; 2] {
+    let minus = b.neg(needed);
+    let floor = b.floor(minus);
+    let up = b.neg(floor);
+    let count = b.clamp(up, COUNTS[0], COUNTS[1]);
+    let turns = b.trunc_i(count);
+    [count, b.cast_u(turns)]
+}
+
 /// The lattice coordinate that a window of `count` (a real) points around `x` starts at.
 pub(super) fn start_of(b: &mut Builder, x: Value, count: Value) -> Value {
     let half = b.scale(count, -0.5);
@@ -127,7 +140,7 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let index = b.param("index", Type::U32);
     let sums = sums(&mut b, mode);
     let start = b.param_f32("start_y");
-    let (columns, count) = (b.param_f32("columns"), b.param("column_count", Type::U32));
+    let (rows, columns) = (b.param_f32("rows"), b.param_f32("columns"));
     let shear = b.param_f32("shear");
     let grid = Grid::declare(&mut b, tiles);
     let (x, y) = (b.param_f32("x"), b.param_f32("y"));
@@ -139,11 +152,21 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     // The row's largest envelope lies where d_x = (T₁₂/T₂₂) d_y.
     let lean = b.mul(shear, dy);
     let centre = b.sub(x, lean);
+    // The kernels that count lie within an ellipse.
+    let share = b.div(dy, rows);
+    let square = b.square(share);
+    let beside = b.scale(square, -4.0);
+    let (one, zero) = (b.f32(1.0), b.f32(0.0));
+    let left = b.add(one, beside);
+    let left = b.max(left, zero);
+    let left = b.sqrt(left);
+    let columns = b.mul(columns, left);
+    let [columns, turns] = count(&mut b, columns);
     let start = start_of(&mut b, centre, columns);
     let mut captures = vec![start, x, dy, word];
     captures.extend(grid.captures());
     captures.extend(self::captures(&shape));
-    let sums = b.fold(&kernel, count, &sums, &captures);
+    let sums = b.fold(&kernel, turns, &sums, &captures);
     for (name, sum) in NAMES.into_iter().zip(sums) {
         b.result(name, sum);
     }

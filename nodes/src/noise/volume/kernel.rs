@@ -66,24 +66,36 @@ pub(super) fn start(b: &mut Builder, x: Value, count: Value) -> Value {
     b.offset(start, 1.0)
 }
 
-/// The window of a fold: how many (a real and a u32).
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Window {
-    pub(super) count: Value,
-    pub(super) turns: Value,
+/// The fewest and the most lattice points of a row, rows of a slice, and slices.
+pub(super) const COUNTS: [f32; 2] = [2.0, 48.0];
+
+/// How many lattice points of a line are summed, a real and a u32: those within an ellipsoid, of which
+/// `left` is the square of the share that other axes leave, and `needed` the extent along the line.
+pub(super) fn window(b: &mut Builder, needed: Value, left: Option<Value>) -> [Value; 2] {
+    let needed = match left {
+        None => needed,
+        Some(left) => {
+            let zero = b.f32(0.0);
+            let left = b.max(left, zero);
+            let share = b.sqrt(left);
+            b.mul(needed, share)
+        }
+    };
+    let minus = b.neg(needed);
+    let floor = b.floor(minus);
+    let up = b.neg(floor);
+    let count = b.clamp(up, COUNTS[0], COUNTS[1]);
+    let turns = b.trunc_i(count);
+    [count, b.cast_u(turns)]
 }
 
-impl Window {
-    fn declare(b: &mut Builder, name: &str) -> Self {
-        Self {
-            count: b.param_f32(name),
-            turns: b.param(format!("{name}_turns"), Type::U32),
-        }
-    }
-
-    pub(super) fn captures(self) -> [Value; 2] {
-        [self.count, self.turns]
-    }
+/// What is left of 1 at an offset (in units of the kernel's width) from the middle of an axis whose
+/// extent is `needed`.
+fn beside(b: &mut Builder, left: Value, offset: Value, (needed, width): (Value, f32)) -> Value {
+    let share = b.div(offset, needed);
+    let share = b.scale(share, 2.0 * width);
+    let square = b.square(share);
+    b.sub(left, square)
 }
 
 /// One lattice row of filtered kernels, the body of a fold over rows.
@@ -94,10 +106,11 @@ fn row(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> FunctionRe
     let b = &mut builder;
     let index = b.param("index", Type::U32);
     let sums = sums(b, parts);
-    let columns = Window::declare(b, "columns");
+    let [rows, columns] = ["rows", "columns"].map(|name| b.param_f32(name));
     // The row's largest envelope lies where d_x = lean_y d_y + lean_z d_z.
     let (lean_y, lean_z) = (b.param_f32("lean_y"), b.param_f32("lean_z"));
     let (x, first, dz) = (b.param_f32("x"), b.param_f32("y"), b.param_f32("dz"));
+    let (middle, left) = (b.param_f32("middle"), b.param_f32("left"));
     let points = Points::declare(b, tiles);
     let shape = shape(b);
     let number = b.float_u(index);
@@ -107,14 +120,17 @@ fn row(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> FunctionRe
     let lean = b.dot(&[lean_y, lean_z], &[dy, dz]);
     let lean = b.scale(lean, width);
     let centre = b.sub(x, lean);
-    let start = start(b, centre, columns.count);
+    let beyond = b.sub(dy, middle);
+    let left = beside(b, left, beyond, (rows, width));
+    let [columns, turns] = window(b, columns, Some(left));
+    let start = start(b, centre, columns);
     let points = points.moved(b, 0, start);
     let dx = b.sub(x, start);
     let dx = b.scale(dx, 1.0 / width);
     let mut captures = vec![dx, dy, dz];
     captures.extend(points.captures());
     captures.extend(shape);
-    let sums = b.fold(&kernel, columns.turns, &sums, &captures);
+    let sums = b.fold(&kernel, turns, &sums, &captures);
     for (name, sum) in NAMES.into_iter().zip(sums) {
         b.result(name, sum);
     }
@@ -129,8 +145,8 @@ pub(super) fn slice(module: &mut Module, kind: Kind, parts: usize, tiles: bool) 
     let b = &mut builder;
     let index = b.param("index", Type::U32);
     let sums = sums(b, parts);
-    let rows = Window::declare(b, "rows");
-    let columns = Window::declare(b, "columns");
+    let extents = ["slices", "rows", "columns"].map(|name| b.param_f32(name));
+    let [slices, rows, columns] = extents;
     // The slice's largest envelope lies where d_y = shear d_z.
     let shear = b.param_f32("shear");
     let (lean_y, lean_z) = (b.param_f32("lean_y"), b.param_f32("lean_z"));
@@ -141,18 +157,20 @@ pub(super) fn slice(module: &mut Module, kind: Kind, parts: usize, tiles: bool) 
     let points = points.stepped(b, 2, number);
     let number = b.scale(number, 1.0 / width);
     let dz = b.sub(first, number);
-    let lean = b.mul(shear, dz);
-    let lean = b.scale(lean, width);
+    let middle = b.mul(shear, dz);
+    let lean = b.scale(middle, width);
     let centre = b.sub(y, lean);
-    let start = start(b, centre, rows.count);
+    let one = b.f32(1.0);
+    let left = beside(b, one, dz, (slices, width));
+    let [count, turns] = window(b, rows, Some(left));
+    let start = start(b, centre, count);
     let points = points.moved(b, 1, start);
     let dy = b.sub(y, start);
     let dy = b.scale(dy, 1.0 / width);
-    let mut captures = columns.captures().to_vec();
-    captures.extend([lean_y, lean_z, x, dy, dz]);
+    let mut captures = vec![rows, columns, lean_y, lean_z, x, dy, dz, middle, left];
     captures.extend(points.captures());
     captures.extend(shape);
-    let sums = b.fold(&row, rows.turns, &sums, &captures);
+    let sums = b.fold(&row, turns, &sums, &captures);
     for (name, sum) in NAMES.into_iter().zip(sums) {
         b.result(name, sum);
     }

@@ -1,6 +1,6 @@
 //! One octave of the noise in space.
 
-use super::kernel::{Window, slice, start};
+use super::kernel::{COUNTS, slice, start, window};
 use super::points::Points;
 use super::spread::{Inverse, Spread};
 use super::{Kind, NAMES, PAIRS, parts, place, quadrupole, quintic};
@@ -14,11 +14,8 @@ use mipless_codegen::moments::Mode;
 /// Below this share of its amplitude an octave has faded, above the other it has not begun to.
 const FADE: [f32; 2] = [0.03, 0.06];
 
-/// A kernel is dropped where its envelope is this small against the unfiltered noise: −2 ln 0.008.
-const NEGLIGIBLE_LN: f32 = 9.66;
-
-/// The most slices, rows or columns that are summed; footprints that need more fade.
-const MOST: f32 = 32.0;
+/// A kernel is dropped where its envelope is this small against the unfiltered noise: −2 ln 0.0032.
+const NEGLIGIBLE_LN: f32 = 11.5;
 
 /// One octave of the unfiltered noise, the body of a fold.
 pub(super) fn point(module: &mut Module, kind: Kind, octaves: Octaves) -> FunctionRef {
@@ -42,17 +39,18 @@ pub(super) fn point(module: &mut Module, kind: Kind, octaves: Octaves) -> Functi
     builder.finish(module)
 }
 
-/// The lattice points that a footprint needs: how many slices, of rows, of columns, how far each
-/// leans, and how much of the octave there is.
+/// The lattice points that a footprint needs: the extents (in cells) along z, along y at a z, and along
+/// x at a y and z, how far each leans, and how much of the octave there is. What needs more than can be
+/// summed fades.
 struct Reach {
-    counts: [Value; 3],
+    extents: [Value; 3],
     /// Along y by z, and along x by y and z.
     leans: [Value; 3],
     fade: Value,
 }
 
 impl Reach {
-    /// Kernels reach R² = ln F + 9.66, along z, along y at a z, along x at a y and z.
+    /// Kernels reach R² = ln F + 11.5, along z, along y at a z, along x at a y and z.
     fn of(
         b: &mut Builder,
         kind: Kind,
@@ -71,26 +69,22 @@ impl Reach {
         let along_y = b.div(p_xx, whole);
         let along_x = b.div(one, p_xx);
         let mut most = zero;
-        let counts = [total[5], along_y, along_x].map(|variance| {
+        let extents = [total[5], along_y, along_x].map(|variance| {
             let size = b.sqrt(variance);
             let needed = b.mul(size, reach);
             most = b.max(most, needed);
-            // ⌈needed⌉ between 3 and the most.
-            let minus = b.neg(needed);
-            let floor = b.floor(minus);
-            let up = b.neg(floor);
-            b.clamp(up, 3.0, MOST)
+            needed
         });
         // The octave fades to nothing before it is dropped.
         let amplitude = b.sqrt(left);
         let by_amplitude = share(b, amplitude, FADE[0], FADE[1]);
-        let by_reach = share(b, most, MOST, MOST * 0.8);
+        let by_reach = share(b, most, COUNTS[1], COUNTS[1] * 0.8);
         let [lean_y, lean_z] = [p_xy, p_xz].map(|p| {
             let lean = b.div(p, p_xx);
             b.neg(lean)
         });
         Self {
-            counts,
+            extents,
             leans: [b.div(total[4], total[5]), lean_y, lean_z],
             fade: b.mul(by_amplitude, by_reach),
         }
@@ -149,17 +143,12 @@ pub(super) fn filtered(
     };
     let used = b.mul(by_kernels, reach.fade);
     let is_used = b.lt(zero, used);
-    let [slices, rows, columns] = reach.counts.map(|count| {
-        let turns = b.trunc_i(count);
-        let turns = b.cast_u(turns);
-        Window { count, turns }
-    });
-    let turns = b.select(is_used, slices.turns, none);
+    let [slices, turns] = window(b, reach.extents[0], None);
+    let turns = b.select(is_used, turns, none);
 
     let [x, y, z] = state.fractions;
-    let first = start(b, z, slices.count);
-    let mut captures = rows.captures().to_vec();
-    captures.extend(columns.captures());
+    let first = start(b, z, slices);
+    let mut captures = reach.extents.to_vec();
     captures.extend(reach.leans);
     let dz = b.sub(z, first);
     captures.extend([x, y, b.scale(dz, 1.0 / width)]);

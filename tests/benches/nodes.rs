@@ -1,0 +1,83 @@
+//! What filtering costs by node: the example of every node's page, by `point` and by `local`.
+//!
+//! `cargo bench -p mipless-tests --bench nodes [-- NAME…]` prints Markdown: nanoseconds a pixel on one
+//! core of the CPU by `point`, and how many times that `local` takes under footprints of three sizes.
+
+use mipless::{Footprint, Method, Options, Program};
+use mipless_codegen::cpu::{Evaluator, Scratch};
+use mipless_tests::case::{Case, examples};
+use std::time::Instant;
+
+/// The sides of the pixels, in units of texture space.
+const PIXELS: [f32; 3] = [1.0 / 512.0, 1.0 / 32.0, 1.0];
+const SIDE: usize = 40;
+/// The fastest of this many runs counts.
+const RUNS: usize = 40;
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().any(|argument| argument == "--test") {
+        return;
+    }
+    let wanted: Vec<&String> = arguments.iter().filter(|a| !a.starts_with('-')).collect();
+    println!("| node | point, ns | local/point at 1/512 | 1/32 | 1 |\n|---|---:|---:|---:|---:|");
+    let mut all = Vec::new();
+    for case in examples() {
+        let name = case.name.trim_start_matches("example_");
+        if !wanted.is_empty() && !wanted.iter().any(|w| *w == name) {
+            continue;
+        }
+        let (point, ratios) = measure(&case);
+        all.extend(ratios);
+        let [near, middle, far] = ratios;
+        println!("| {name} | {point:.0} | {near:.2} | {middle:.2} | {far:.2} |");
+    }
+    all.sort_by(f64::total_cmp);
+    println!("| median | | {:.2} | | |", all[all.len() / 2]);
+}
+
+/// Nanoseconds a pixel by `point`, and `local` relative to it under each size of pixel.
+fn measure(case: &Case) -> (f64, [f64; PIXELS.len()]) {
+    let programs = [Method::Point, Method::Local].map(|method| {
+        case.texture.compile(&Options {
+            method,
+            ..Options::default()
+        })
+    });
+    let parameters: Vec<f32> = (programs[0].interface.parameters.iter())
+        .flat_map(|p| p.default.clone())
+        .collect();
+    let mut point = f64::INFINITY;
+    let ratios = PIXELS.map(|pixel| {
+        let [alone, filtered] = times(&programs, &footprints(pixel), &parameters);
+        point = point.min(alone);
+        filtered / alone
+    });
+    (point * 1e9 / (SIDE * SIDE) as f64, ratios)
+}
+
+fn footprints(pixel: f32) -> Vec<Footprint> {
+    (0..SIDE * SIDE)
+        .map(|i| Footprint {
+            cell: [0; 2],
+            uv: [i % SIDE, i / SIDE].map(|at| (at as f32 + 0.5) / SIDE as f32),
+            du: [pixel, 0.0],
+            dv: [0.0, pixel],
+        })
+        .collect()
+}
+
+/// Seconds for all pixels; the programs take turns.
+fn times(programs: &[Program; 2], footprints: &[Footprint], parameters: &[f32]) -> [f64; 2] {
+    let evaluators = programs.each_ref().map(Evaluator::<f32>::of_program);
+    let (mut scratch, mut outputs) = (Scratch::new(), Vec::new());
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..RUNS {
+        for (evaluator, least) in evaluators.iter().zip(&mut least) {
+            let start = Instant::now();
+            evaluator.evaluate_footprints(&mut scratch, footprints, parameters, &mut outputs);
+            *least = least.min(start.elapsed().as_secs_f64());
+        }
+    }
+    least
+}
