@@ -40,8 +40,8 @@ static SPEC: NodeSpec = NodeSpec {
             and from 0.1 cells on by Q(d) e^{−d·d/2b²} in place of the product of the w, with \
             b = 0.365, Q = 0.951 + Σ_i P(d_i), P(t) = 3.217t² − 8.307t⁴ + 3.731t⁶, which any Σ \
             filters in closed form.",
-        accuracy: "Filtered mean within 0.025 standard deviations of the noise for round footprints on \
-            a plane at any angle (`quintic`: 0.02), 0.03 at 8:1 (0.025), from 0.02 to 2 cells. \
+        accuracy: "Filtered mean within 0.018 standard deviations of the noise for round footprints on \
+            a plane at any angle (`quintic`: 0.02), 0.02 at 8:1 (0.025), from 0.02 to 2 cells. \
             Kernels beyond the window are dropped, and octaves fade out between 6 % and 3 % of \
             their amplitude, what is dropped joining the remainder. Local standard deviations at \
             0.02 and 0.1 cells within 0.01 and 0.1 of the true ones by `local`, 0.005 and 0.02 by \

@@ -13,4 +13,5 @@ pub(crate) mod soft;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tiling;
+pub(crate) mod touch;
 pub(crate) mod triangle;

@@ -118,7 +118,7 @@ struct Claim {
 const CLAIMS: [Claim; 2] = [
     Claim {
         kernel: "gaussian",
-        mean: [0.025, 0.03],
+        mean: [0.018, 0.02],
         deviation: 0.002,
         extent: 5.0,
     },

@@ -10,7 +10,11 @@ use std::time::Instant;
 
 /// The sides of the pixels, in units of texture space.
 const PIXELS: [f32; 3] = [1.0 / 512.0, 1.0 / 32.0, 1.0];
-const SIDE: usize = 40;
+/// The window consists of square tiles, scattered over a unit of texture space: what a device or the
+/// CPU takes together is together in texture space.
+const TILES: usize = 24;
+/// The pixels along the side of a tile.
+const SIDE: usize = 11;
 /// The fastest of this many runs counts.
 const RUNS: usize = 40;
 
@@ -53,16 +57,22 @@ fn measure(case: &Case) -> (f64, [f64; PIXELS.len()]) {
         point = point.min(alone);
         filtered / alone
     });
-    (point * 1e9 / (SIDE * SIDE) as f64, ratios)
+    (point * 1e9 / (TILES * SIDE * SIDE) as f64, ratios)
 }
 
 fn footprints(pixel: f32) -> Vec<Footprint> {
-    (0..SIDE * SIDE)
-        .map(|i| Footprint {
-            cell: [0; 2],
-            uv: [i % SIDE, i / SIDE].map(|at| (at as f32 + 0.5) / SIDE as f32),
-            du: [pixel, 0.0],
-            dv: [0.0, pixel],
+    (0..TILES * SIDE * SIDE)
+        .map(|i| {
+            let (tile, at) = (i / (SIDE * SIDE), i % (SIDE * SIDE));
+            // The R2 sequence.
+            let corner = [0.754_877_7, 0.569_840_3].map(|step| (tile as f32 * step).fract());
+            let at = [at % SIDE, at / SIDE].map(|at| (at as f32 + 0.5) * pixel);
+            Footprint {
+                cell: [0; 2],
+                uv: [corner[0] + at[0], corner[1] + at[1]],
+                du: [pixel, 0.0],
+                dv: [0.0, pixel],
+            }
         })
         .collect()
 }

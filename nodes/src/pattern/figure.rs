@@ -3,9 +3,10 @@
 use super::region::{Measure, Outline, Whitening, disc};
 use super::separable::{finished_signal, rest_of_two};
 use super::soft::{self, Edge};
+use super::touch::Touch;
 use crate::componentwise::difference;
 use crate::noise::field::{Field, Spread};
-use mipless_codegen::ir::Value;
+use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::Node;
@@ -74,7 +75,16 @@ pub(crate) fn drawn_softly(
     let spread = Spread::of(lower.b(), &position);
     let measure = match &figure {
         Figure::Disc { radius } => disc(lower, back, *radius, &spread),
-        Figure::Polygon { outline, axes } => polygon(lower, outline, back, axes, &spread),
+        Figure::Polygon { outline, axes } => {
+            let b = lower.b();
+            // The axes are of one length, and orthogonal.
+            let size = b.dot(&axes[0], &axes[0]);
+            let size = b.sqrt(size);
+            let edges = outline.distances().map(|distance| b.scale(size, distance));
+            let square = b.dot(&back, &back);
+            let touch = Touch::between(b, square, edges, spread.covariance);
+            polygon(lower, outline, (back, touch), axes, &spread)
+        }
         Figure::Line {
             outline,
             axes,
@@ -82,7 +92,15 @@ pub(crate) fn drawn_softly(
         } => {
             let b = lower.b();
             let back = [b.add(back[0], from[0]), b.add(back[1], from[1])];
-            polygon(lower, outline, back, axes, &spread)
+            let square = aside(b, back, axes[2]);
+            // The arcs are polygons, of whose corners some lie a little outside.
+            let [x, y, _] = outline.vertices[0];
+            let outer = x.hypot(y);
+            let size = b.dot(&axes[0], &axes[0]);
+            let size = b.sqrt(size);
+            let edges = [2.0 - outer, outer].map(|distance| b.scale(size, distance));
+            let touch = Touch::between(b, square, edges, spread.covariance);
+            polygon(lower, outline, (back, touch), axes, &spread)
         }
     };
     let field = match &soft {
@@ -136,7 +154,7 @@ pub(crate) fn sharp(lower: &mut Lower<'_>, measure: Measure, spread: &Spread) ->
 fn polygon(
     lower: &mut Lower<'_>,
     outline: &Outline,
-    back: [Value; 2],
+    (back, touch): ([Value; 2], Touch),
     [a, c, e]: &[[Value; 2]; 3],
     spread: &Spread,
 ) -> Measure {
@@ -144,7 +162,23 @@ fn polygon(
     let function = lower.function(&key, |module| outline.function(module));
     let b = lower.b();
     let whitening = Whitening::of(b, spread.covariance);
-    outline.measure(b, &function, &whitening, [back, *a, *c, *e])
+    outline.measure(b, &function, (&whitening, touch), [back, *a, *c, *e])
+}
+
+/// The squared distance of the mean from a segment; its start is at an offset from the mean.
+fn aside(b: &mut Builder, start: [Value; 2], along: [Value; 2]) -> Value {
+    let place = start.map(|x| b.neg(x));
+    let square = b.dot(&along, &along);
+    let least = b.f32(1e-30);
+    let square = b.max(square, least);
+    let share = b.dot(&place, &along);
+    let share = b.div(share, square);
+    let share = b.clamp(share, 0.0, 1.0);
+    let across = [0, 1].map(|k| {
+        let along = b.mul(share, along[k]);
+        b.sub(place[k], along)
+    });
+    b.dot(&across, &across)
 }
 
 /// 1 inside, 0 outside.
@@ -165,22 +199,8 @@ fn point(lower: &mut Lower<'_>, figure: &Figure, back: [Value; 2]) -> Value {
             from,
             ..
         } => {
-            // From the start of the segment, and how far along it.
-            let place = [0, 1].map(|k| {
-                let start = b.add(back[k], from[k]);
-                b.neg(start)
-            });
-            let square = b.dot(e, e);
-            let least = b.f32(1e-30);
-            let square = b.max(square, least);
-            let share = b.dot(&place, e);
-            let share = b.div(share, square);
-            let share = b.clamp(share, 0.0, 1.0);
-            let across = [0, 1].map(|k| {
-                let along = b.mul(share, e[k]);
-                b.sub(place[k], along)
-            });
-            let (distance, reach) = (b.dot(&across, &across), b.dot(a, a));
+            let start = [b.add(back[0], from[0]), b.add(back[1], from[1])];
+            let (distance, reach) = (aside(b, start, *e), b.dot(a, a));
             b.lt(distance, reach)
         }
     };

@@ -7,6 +7,7 @@
 //! within 2e-6; else V(h, q) = (Φ(h) − ½)(Φ(q) − ½) − V(q, h). So any covariance is exact. A disc is
 //! integrated along the minor axis of the footprint, chord by chord.
 
+use super::touch::Touch;
 use crate::noise::field::Spread;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -277,21 +278,40 @@ impl Outline {
         b.finish(module)
     }
 
+    /// The distances from the origin of the axes between which all edges lie, for axes A and B of
+    /// length 1 and no E.
+    pub(crate) fn distances(&self) -> [f32; 2] {
+        let corners: Vec<[f32; 2]> = self.vertices.iter().map(|&[x, y, _]| [x, y]).collect();
+        let nearest = corners.iter().enumerate().map(|(i, &[x1, y1])| {
+            let [x2, y2] = corners[(i + 1) % corners.len()];
+            let (dx, dy) = (x2 - x1, y2 - y1);
+            let share = -(x1 * dx + y1 * dy) / (dx * dx + dy * dy);
+            let share = share.clamp(0.0, 1.0);
+            (x1 + share * dx).hypot(y1 + share * dy)
+        });
+        let farthest = corners.iter().map(|[x, y]| x.hypot(*y));
+        [
+            nearest.fold(f32::INFINITY, f32::min),
+            farthest.fold(0.0, f32::max),
+        ]
+    }
+
     /// The measure at a mean that is −o from the origin of the axes: o, A, B, E.
     pub(crate) fn measure(
         &self,
         b: &mut Builder,
         function: &FunctionRef,
-        whitening: &Whitening,
+        (whitening, touch): (&Whitening, Touch),
         axes: [[Value; 2]; 4],
     ) -> Measure {
         let zero = b.f32(0.0);
-        let count = b.u32(self.vertices.len() as u32);
+        let count = touch.turns(b, self.vertices.len() as u32);
         let mut captures = whitening.captures().to_vec();
         captures.extend(axes.iter().flatten());
         let sums = b.fold(function, count, &[zero; 6], &captures);
         let sums = std::array::from_fn(|i| sums[i]);
-        whitening.back(b, sums)
+        let sums = whitening.back(b, sums);
+        touch.measure(b, sums)
     }
 
     /// Whether the origin lies inside, for the same axes: the parity of the edges that a ray meets.
@@ -455,7 +475,9 @@ pub(crate) fn disc_function(module: &mut Module) -> FunctionRef {
     let span = b.max(span, zero);
     let half = b.scale(span, 0.5);
     let middle = b.add(low, half);
-    let count = b.u32(CHORDS);
+    let square = b.dot(&[x, y], &[x, y]);
+    let touch = Touch::between(&mut b, square, [radius; 2], covariance);
+    let count = touch.turns(&mut b, CHORDS);
     let captures = [middle, half, radius, u, v, inverse_x, inverse_y];
     let sums = b.fold(&chord, count, &[zero; 6], &captures);
     // Turned back; σ is still in the derivatives.
@@ -478,7 +500,8 @@ pub(crate) fn disc_function(module: &mut Module) -> FunctionRef {
     let hyy = b.dot(&[s2, twice, c2], &[huu, huv, hvv]);
     let (difference, turn) = (b.sub(huu, hvv), b.sub(c2, s2));
     let hxy = b.dot(&[cs, turn], &[difference, huv]);
-    for (name, value) in NAMES.into_iter().zip([sums[0], gx, gy, hxx, hxy, hyy]) {
+    let measure = touch.measure(&mut b, [sums[0], gx, gy, hxx, hxy, hyy]);
+    for (name, value) in NAMES.into_iter().zip(measure) {
         b.result(name, value);
     }
     b.finish(module)

@@ -9,6 +9,7 @@
 use super::figure::sharp;
 use super::region::{Measure, NAMES, Outline, Whitening, disc_function};
 use super::separable::{finished_signal, phase};
+use super::touch::Touch;
 use crate::noise::field::Spread;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -515,7 +516,10 @@ fn figure_function(module: &mut Module, tile: &Tile) -> FunctionRef {
         (Some(outline), _) => {
             let (zero, one) = (b.f32(0.0), b.f32(1.0));
             let axes = [[across, up], [one, zero], [zero, one], [zero, zero]];
-            outline.measure(&mut b, &own, &whitening, axes)
+            let edges = outline.distances().map(|distance| b.f32(distance));
+            let square = b.dot(&[across, up], &[across, up]);
+            let touch = Touch::between(&mut b, square, edges, covariance);
+            outline.measure(&mut b, &own, (&whitening, touch), axes)
         }
         (None, Tile::Disc(radius)) => {
             let radius = b.f32(*radius as f32);

@@ -78,7 +78,11 @@ pub(super) fn window(b: &mut Builder, needed: Value, left: Option<Value>) -> [Va
             let zero = b.f32(0.0);
             let left = b.max(left, zero);
             let share = b.sqrt(left);
-            b.mul(needed, share)
+            let within = b.mul(needed, share);
+            // Of what is close to a point all is summed, as of the point itself.
+            let three = b.f32(3.0);
+            let least = b.min(needed, three);
+            b.max(within, least)
         }
     };
     let minus = b.neg(needed);
