@@ -1,6 +1,6 @@
 //! A periodic pulse: 1 around every period's centre, 0 elsewhere, with edges that may be ramps.
 
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Normal;
 
 /// A pulse in each of `repeat` equal parts of the unit interval, which itself repeats.
@@ -36,6 +36,70 @@ const HARMONICS: usize = 6;
 /// A live ramp is at least this wide, and at least 0.02 σ: its hinges then keep their digits.
 const NARROWEST: f32 = 1e-4;
 
+/// The series of a module's pulses, edges and harmonics, as functions: of the two a footprint takes one.
+#[derive(Default)]
+pub(crate) struct Series(Vec<([Option<f32>; 2], [FunctionRef; 2])>);
+
+impl Series {
+    /// The functions for pulses of this half width and bevel, where they are constants.
+    fn of(&mut self, module: &mut Module, shape: [Option<f32>; 2]) -> [FunctionRef; 2] {
+        if let Some((_, known)) = self.0.iter().find(|(known, _)| *known == shape) {
+            return known.clone();
+        }
+        let functions = [
+            series(
+                module,
+                "pulse_edges",
+                "A pulse by its edges.",
+                shape,
+                Pulse::edges,
+            ),
+            series(
+                module,
+                "pulse_harmonics",
+                "A pulse by its harmonics.",
+                shape,
+                Pulse::harmonics,
+            ),
+        ];
+        self.0.push((shape, functions.clone()));
+        functions
+    }
+}
+
+/// A series as the body of a fold of at most one turn; captures: distance, σ, and what is not constant
+/// of half width and bevel.
+fn series(
+    module: &mut Module,
+    name: &str,
+    doc: &str,
+    shape: [Option<f32>; 2],
+    of: impl Fn(&Pulse, &mut Builder, Value, Value) -> [Value; 4],
+) -> FunctionRef {
+    let names = ["mean", "slope", "bend", "third"];
+    let mut b = Builder::new(name, doc);
+    b.param("index", Type::U32);
+    for name in names {
+        b.param_f32(format!("last_{name}"));
+    }
+    let (distance, sd) = (b.param_f32("distance"), b.param_f32("sd"));
+    let [half, bevel] = [0, 1].map(|i| match shape[i] {
+        Some(x) => b.f32(x),
+        None => b.param_f32(["half", "bevel"][i]),
+    });
+    let pulse = Pulse {
+        repeat: 1.0,
+        centre: b.f32(0.0),
+        half,
+        bevel,
+    };
+    let results = of(&pulse, &mut b, distance, sd);
+    for (name, value) in names.into_iter().zip(results) {
+        b.result(name, value);
+    }
+    b.finish(module)
+}
+
 impl Pulse {
     /// The signed distance from the nearest centre, in [−½, ½], and its magnitude.
     fn folded(&self, b: &mut Builder, x: Value) -> [Value; 2] {
@@ -66,14 +130,26 @@ impl Pulse {
     /// The mean over a Gaussian, and its first three derivatives by the coordinate's mean, each times
     /// as many σ: edges one by one up to σ = 0.11 parts (those left out are half a part away, beyond
     /// 4.5 σ: 3e-6), six damped harmonics beyond (those left out are below 1e-6).
-    pub(crate) fn moments(&self, b: &mut Builder, axis: Axis) -> [Value; 4] {
+    pub(crate) fn moments(
+        &self,
+        b: &mut Builder,
+        (module, series): (&mut Module, &mut Series),
+        axis: Axis,
+    ) -> [Value; 4] {
         let [signed, distance] = self.folded(b, axis.mean);
         let sd = b.scale(axis.sd, self.repeat);
-        let near = self.edges(b, distance, sd);
-        let far = self.harmonics(b, distance, sd);
+        let shape = [self.half, self.bevel].map(|v| b.as_constant(v));
+        let [edges, harmonics] = series.of(module, shape);
+        let mut captures = vec![distance, sd];
+        let shapes = shape.iter().zip([self.half, self.bevel]);
+        captures.extend(shapes.filter(|(known, _)| known.is_none()).map(|(_, v)| v));
         let crossover = b.f32(CROSSOVER);
         let narrow = b.lt(sd, crossover);
-        let mut out = [0, 1, 2, 3].map(|i| b.select(narrow, near[i], far[i]));
+        let (none, once, nothing) = (b.u32(0), b.u32(1), b.f32(0.0));
+        let counts = [b.select(narrow, once, none), b.select(narrow, none, once)];
+        let near = b.fold(&edges, counts[0], &[nothing; 4], &captures);
+        let far = b.fold(&harmonics, counts[1], &[nothing; 4], &captures);
+        let mut out = [0, 1, 2, 3].map(|i| b.add(near[i], far[i]));
         out[0] = b.clamp(out[0], 0.0, 1.0);
         // The distance is the coordinate or its negative.
         let (zero, one, minus) = (b.f32(0.0), b.f32(1.0), b.f32(-1.0));
