@@ -98,6 +98,7 @@ mod multiply;
 mod noise2d;
 mod noise3d;
 mod normalize;
+mod normalmap;
 mod out;
 mod over;
 mod overlay;
@@ -307,6 +308,7 @@ static CATALOGUE: &[NodeDef] = &[
     dot::DEF,
     extract::DEF,
     heighttonormal::DEF,
+    normalmap::DEF,
     separate2::DEF,
     separate3::DEF,
     separate4::DEF,
