@@ -113,6 +113,8 @@ mod quantize;
 mod ramp4;
 mod ramplr;
 mod ramptb;
+mod randomcolor;
+mod randomfloat;
 mod range;
 mod repeat;
 mod rgbtohsv;
@@ -178,6 +180,8 @@ static CATALOGUE: &[NodeDef] = &[
     noise2d::DEF,
     noise3d::DEF,
     phasornoise2d::DEF,
+    randomcolor::DEF,
+    randomfloat::DEF,
     ridged2d::DEF,
     spectralnoise2d::DEF,
     turbulence2d::DEF,
