@@ -31,6 +31,7 @@ mod burn;
 mod byexample;
 mod ceil;
 mod cellnoise2d;
+mod cellnoise3d;
 mod checkerboard;
 mod circle;
 mod clamp;
@@ -173,6 +174,7 @@ static CATALOGUE: &[NodeDef] = &[
     // Noise.
     byexample::DEF,
     cellnoise2d::DEF,
+    cellnoise3d::DEF,
     fractal2d::DEF,
     fractal3d::DEF,
     gabornoise2d::DEF,

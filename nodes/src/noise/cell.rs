@@ -6,6 +6,7 @@
 //! shear is not normal.
 
 pub(crate) mod line;
+pub(crate) mod space;
 
 use super::field::{Field, Spread};
 use super::period::wrapped;
@@ -317,7 +318,9 @@ impl Plane {
         let sd = b.sqrt(raised);
         let inverse = b.div(one, sd);
         let shear = b.div(s_xy, raised);
-        // What x has beyond y: det Σ/Σ₂₂.
+        // What x has beyond y: det Σ/Σ₂₂, of what is raised.
+        let own = b.scale(s_xx, 1e-12);
+        let determinant = b.add(determinant, own);
         let across = b.div(determinant, raised);
         let across = b.min(across, s_xx);
         let [start, rows] = window(b, y, sd);
