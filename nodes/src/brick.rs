@@ -20,10 +20,12 @@ static SPEC: NodeSpec = NodeSpec {
     category: Category::Pattern,
     summary: "A wall of bricks, 1 on their faces and 0 in the joints.",
     doc: Doc {
-        computes: "With x = columns · u and y = rows · v, bricks of 1 × 1 in one of five bonds: \
+        computes: "With x = columns · u and y = rows · v, bricks of 1 × 1 in one of six bonds: \
             `running` (every other row is shifted by row_offset), `english` (rows of stretchers \
             and rows of headers of half the width), `flemish` (stretchers and headers alternate in \
-            each row), `basket` (pairs of lying and of standing bricks) and `herringbone`. Standing \
+            each row), `basket` (pairs of lying and of standing bricks), `herringbone` and `spanish` (a \
+            pinwheel: in unit cells of 3/2 × 3, bricks from (0, 0) to (1/2, 2), (1/2, 0) to (3/2, 1), \
+            (1, 1) to (3/2, 3) and (0, 2) to (1, 3) around a square from (1/2, 1) to (1, 2)). Standing \
             bricks are 1/2 × 2, which is a turned brick where rows = 2 columns. out rises from 0 at the \
             joint to 1 over the bevel; with the output `random`, out is a uniform random number of \
             [0, 1] for each brick and half of the joints around it. Joints and bevels are measured in rows and have the same \
@@ -43,13 +45,20 @@ static SPEC: NodeSpec = NodeSpec {
             deviation is within 0.03. Held by `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
             Mehler 1866. Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. Names of \
-            bonds as masons use them.",
+            bonds as masons use them, `spanish` as Material Maker does.",
     },
     inputs: &[
         TEXCOORD,
         PortSpec::new(
             "bond",
-            PortType::Choice(&["running", "english", "flemish", "herringbone", "basket"]),
+            PortType::Choice(&[
+                "running",
+                "english",
+                "flemish",
+                "herringbone",
+                "basket",
+                "spanish",
+            ]),
             Default::Choice("running"),
             "How the bricks are laid.",
         ),

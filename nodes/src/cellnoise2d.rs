@@ -17,14 +17,14 @@ static SPEC: NodeSpec = NodeSpec {
             independent of the other cells'.",
         statistics: "Uniform: mean ½, variance 1/12, range [0, 1); not Gaussian (max |CDF − Φ| is \
             0.058), but the mean over several cells is. Over a footprint a cell weighs the \
-            probability of its box: mean, gradient and variance are sums over the cells within 2.45 \
+            probability of its box: mean, gradient and variance are sums over the cells within 2.8 \
             standard deviations. Within a row of cells the other coordinate is taken for Gaussian with \
             its mean and variance given the row. Beyond four cells the mean fades to ½, and what is \
             dropped joins the remainder. The spectrum is that of a box, sinc² in both directions.",
         accuracy: "For footprints along the axes of the lattice up to 3 cells exact but for the window: \
-            the mean is within 0.011 standard deviations of the noise (of which the truth has a part), \
+            the mean is within 0.009 standard deviations of the noise (of which the truth has a part), \
             and the local standard deviation within 0.009 from 0.3 cells on; for rotated 8:1 footprints within 0.022 and \
-            0.014. Where it fades, beyond 3 cells along an axis, the mean loses up to 0.15. Held by `nodes/tests/sources.rs`; all sizes in \
+            0.012. Where it fades, beyond 3 cells along an axis, the mean loses up to 0.15. Held by `nodes/tests/sources.rs`; all sizes in \
             `tests/benches/sources.rs`.",
         references: "MaterialX 1.39 specification, node `cellnoise2d`; Heckbert 1989, *Fundamentals of \
             Texture Mapping and Image Warping*, §3.5.8 (Gaussian footprints); Johnson & Kotz, \

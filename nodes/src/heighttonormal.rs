@@ -10,13 +10,7 @@ use mipless_graph::{
 
 static SPEC: NodeSpec = NodeSpec {
     name: "heighttonormal",
-    aliases: &[
-        "normal_map",
-        "normalmap",
-        "bump",
-        "height_to_normal",
-        "normal",
-    ],
+    aliases: &["normal_map", "bump", "height_to_normal", "normal"],
     category: Category::Channel,
     summary: "The normal of a height, as a colour of a normal map.",
     doc: Doc {

@@ -49,7 +49,7 @@ fn to_hsv(b: &mut Builder, [red, green, blue]: [Value; 3]) -> [Value; 3] {
 }
 
 /// The colour of a hue, a saturation and a value.
-fn to_rgb(b: &mut Builder, [hue, saturation, value]: [Value; 3]) -> [Value; 3] {
+pub(crate) fn to_rgb(b: &mut Builder, [hue, saturation, value]: [Value; 3]) -> [Value; 3] {
     let chroma = b.mul(saturation, value);
     [0.0, -1.0 / 3.0, -2.0 / 3.0].map(|turn| {
         // 1 − (|6 fract(h + turn) − 3| − 1), limited to [0, 1].

@@ -31,6 +31,7 @@ mod burn;
 mod byexample;
 mod ceil;
 mod cellnoise2d;
+mod cellnoise3d;
 mod checkerboard;
 mod circle;
 mod clamp;
@@ -98,6 +99,7 @@ mod multiply;
 mod noise2d;
 mod noise3d;
 mod normalize;
+mod normalmap;
 mod out;
 mod over;
 mod overlay;
@@ -112,6 +114,8 @@ mod quantize;
 mod ramp4;
 mod ramplr;
 mod ramptb;
+mod randomcolor;
+mod randomfloat;
 mod range;
 mod repeat;
 mod rgbtohsv;
@@ -170,6 +174,7 @@ static CATALOGUE: &[NodeDef] = &[
     // Noise.
     byexample::DEF,
     cellnoise2d::DEF,
+    cellnoise3d::DEF,
     fractal2d::DEF,
     fractal3d::DEF,
     gabornoise2d::DEF,
@@ -177,6 +182,8 @@ static CATALOGUE: &[NodeDef] = &[
     noise2d::DEF,
     noise3d::DEF,
     phasornoise2d::DEF,
+    randomcolor::DEF,
+    randomfloat::DEF,
     ridged2d::DEF,
     spectralnoise2d::DEF,
     turbulence2d::DEF,
@@ -307,6 +314,7 @@ static CATALOGUE: &[NodeDef] = &[
     dot::DEF,
     extract::DEF,
     heighttonormal::DEF,
+    normalmap::DEF,
     separate2::DEF,
     separate3::DEF,
     separate4::DEF,

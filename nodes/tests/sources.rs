@@ -7,6 +7,8 @@ mod cell;
 mod gabor;
 #[path = "sources/phasor.rs"]
 mod phasor;
+#[path = "sources/random.rs"]
+mod random;
 #[path = "sources/spectral.rs"]
 mod spectral;
 #[path = "sources/truth.rs"]

@@ -63,11 +63,12 @@ fn plane(askew: bool, degrees: f64) -> [[f64; 3]; 2] {
     [turned(cos, sin), turned(-sin, cos)]
 }
 
-/// Means and variances of the point function over footprints, on a grid of ±4.2σ.
-fn truths(json: &str, places: &[[f64; 3]], axes: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
+/// Means and variances of the point function over footprints, on a grid of ±4.2σ that is so many
+/// times as fine as smooth noises need.
+fn truths(json: &str, places: &[[f64; 3]], axes: [[f64; 3]; 2], finer: f64) -> Vec<[f64; 2]> {
     let length = |axis: [f64; 3]| axis.iter().map(|x| x * x).sum::<f64>().sqrt();
     // Five points a cell and never fewer than 4 a standard deviation.
-    let counts = axes.map(|axis| ((5.0 * 8.4 * length(axis)) as usize).clamp(34, 400));
+    let counts = axes.map(|axis| (finer * (5.0 * 8.4 * length(axis)).clamp(34.0, 400.0)) as usize);
     let mut offsets = Vec::new();
     for i in 0..counts[0] {
         for j in 0..counts[1] {
@@ -153,12 +154,23 @@ fn errors(
     (askew, degrees): (bool, f64),
     methods: &[Method],
 ) -> Vec<[f64; 2]> {
+    errors_by(json, (size, ratio), (askew, degrees), methods, 1.0)
+}
+
+/// The same with a finer truth.
+fn errors_by(
+    json: &str,
+    (size, ratio): (f64, f64),
+    (askew, degrees): (bool, f64),
+    methods: &[Method],
+    finer: f64,
+) -> Vec<[f64; 2]> {
     let [p, q] = plane(askew, degrees);
     let [major, minor] = [size * ratio.sqrt(), size / ratio.sqrt()];
     let axes = [p.map(|x| x * major), q.map(|x| x * minor)];
     let places = positions(20);
     let pixels: Vec<_> = places.iter().map(|&p| at(p, axes)).collect();
-    let truths = truths(json, &places, axes);
+    let truths = truths(json, &places, axes, finer);
     let n = places.len() as f64;
     let sd = truths.iter().map(|t| t[1].sqrt()).sum::<f64>() / n;
     (methods.iter())
@@ -420,4 +432,61 @@ fn phi(z: f64) -> f64 {
         })
         .sum();
     0.5 + sum * h / 6.0 / std::f64::consts::TAU.sqrt()
+}
+
+#[test]
+fn cells_are_filtered_as_those_of_a_plane() {
+    let json = graph(r#"{"type":"cellnoise3d"}"#);
+    let deviation = (1.0f64 / 12.0).sqrt();
+    for (ratio, plane, bounds) in [
+        (1.0, (false, 0.0), [0.025, 0.02]),
+        (1.0, (true, 0.0), [0.025, 0.02]),
+        (8.0, (false, 0.0), [0.04, 0.03]),
+        (8.0, (true, 20.0), [0.04, 0.03]),
+        (8.0, (true, 75.0), [0.04, 0.03]),
+    ] {
+        for size in [0.1, 0.3, 1.0] {
+            let methods = [Method::Local, Method::Quad];
+            for found in errors_by(&json, (size, ratio), plane, &methods, 5.0) {
+                println!("{ratio}:1 on {plane:?} at {size}: {found:.4?}");
+                assert!(
+                    found[0] < bounds[0] * deviation && found[1] < bounds[1],
+                    "{ratio}:1 on {plane:?} at {size}: {found:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn cells_are_uniform_and_repeat() {
+    let flat = [[0.0; 3]; 2];
+    let at_all = |places: &[[f64; 3]], axes| -> Vec<Position> {
+        places.iter().map(|&p| at(p, axes)).collect()
+    };
+    let places: Vec<_> = positions(4000).iter().map(|p| p.map(|x| 3.0 * x)).collect();
+    let json = graph(r#"{"type":"cellnoise3d"}"#);
+    let mut values: Vec<f64> = (evaluate(&json, Method::Point, &at_all(&places, flat)).iter())
+        .map(|v| v[0])
+        .collect();
+    values.sort_by(f64::total_cmp);
+    let n = values.len() as f64;
+    let off = |(i, x): (usize, &f64)| (x - (i as f64 + 0.5) / n).abs();
+    let distance = values.iter().enumerate().map(off).fold(0.0, f64::max);
+    // Kolmogorov's 1.95/√n, at a level of 1e-3.
+    assert!(distance < 1.95 / n.sqrt(), "{distance}");
+    let json = graph(r#"{"type":"cellnoise3d","inputs":{"period":5}}"#);
+    let axes = plane(true, 30.0).map(|axis| axis.map(|x| 0.3 * x));
+    let of = |offset: f64| {
+        let moved: Vec<_> = (positions(40).iter())
+            .map(|p| [p[0] + offset, p[1] - offset, p[2] + 2.0 * offset])
+            .collect();
+        evaluate(&json, Method::Local, &at_all(&moved, axes))
+    };
+    for (a, b) in of(0.0).iter().zip(of(1_000_000.0)) {
+        assert!(
+            (a[0] - b[0]).abs() < 1e-4 && (a[1] - b[1]).abs() < 1e-4,
+            "{a:?} {b:?}"
+        );
+    }
 }

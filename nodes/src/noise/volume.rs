@@ -21,7 +21,8 @@ use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_graph::Node;
-use spread::{Inverse, Spread};
+use spread::Inverse;
+pub(super) use spread::Spread;
 
 /// a of the quadrupole: the width of the kernel, in cells.
 const WIDTH: f32 = 0.3854;
@@ -149,7 +150,7 @@ pub(crate) fn filtered(
 
 /// The signal of a field (its numbers come first, then the rest if the mode spreads) at a position: g = Jᵀ∇M,
 /// H = Jᵀ Hess(M) J + Σ ∂_i M H_i, the position's own symbols through ∇M, the rest as a fresh ε.
-fn at(lower: &mut Lower<'_>, position: &[Signal], sums: &[Value]) -> Signal {
+pub(super) fn at(lower: &mut Lower<'_>, position: &[Signal], sums: &[Value]) -> Signal {
     let algebra = &mut lower.algebra;
     let (mode, b) = (algebra.mode, &mut algebra.b);
     let mut signal = Signal::certain(b, sums[0]);

@@ -15,6 +15,8 @@ pub(crate) enum Bond {
     Herringbone,
     /// Pairs of lying and of standing bricks.
     Basket,
+    /// Lying and standing bricks around a square.
+    Spanish,
 }
 
 /// A brick: its centre and its size, in bricks along x and rows along y.
@@ -38,6 +40,7 @@ impl Bond {
             "flemish" => Self::Flemish,
             "herringbone" => Self::Herringbone,
             "basket" => Self::Basket,
+            "spanish" => Self::Spanish,
             _ => panic!("{name} is a bond"),
         }
     }
@@ -48,6 +51,7 @@ impl Bond {
             Self::Running | Self::English => [1.0, 2.0],
             Self::Flemish => [1.5, 2.0],
             Self::Herringbone | Self::Basket => [2.0, 4.0],
+            Self::Spanish => [1.5, 3.0],
         }
     }
 
@@ -100,6 +104,14 @@ impl Bond {
                     ]
                 })
                 .collect(),
+            // Each brick begins where the one before it ends, around the square.
+            Self::Spanish => vec![
+                [0.25, 1.0, 0.5, 2.0],
+                [1.0, 0.5, 1.0, 1.0],
+                [1.25, 2.0, 0.5, 2.0],
+                [0.5, 2.5, 1.0, 1.0],
+                [0.75, 1.5, 0.5, 1.0],
+            ],
         };
         (fixed.into_iter())
             .map(|[x, y, width, height]| Brick {

@@ -163,6 +163,16 @@ fn held(ty: &str, inputs: &Value, cell: f32, bounds: [[f64; 2]; 2]) {
     }
 }
 
+/// Every bond.
+const BONDS: [&str; 6] = [
+    "running",
+    "english",
+    "flemish",
+    "herringbone",
+    "basket",
+    "spanish",
+];
+
 /// What the dense sums themselves may be off by: footprints of 8:1 meet many edges.
 fn tolerance() -> f64 {
     if is_long() { 2.5e-3 } else { 1e-2 }
@@ -184,7 +194,7 @@ fn separable_patterns_are_filtered_exactly() {
 
 #[test]
 fn bricks_are_filtered_exactly() {
-    for bond in ["running", "english", "flemish", "herringbone", "basket"] {
+    for bond in BONDS {
         let inputs = json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": 0.15 });
         held("brick", &inputs, 0.7, [[tolerance(); 2]; 2]);
     }
@@ -192,7 +202,7 @@ fn bricks_are_filtered_exactly() {
 
 #[test]
 fn random_bricks_are_filtered_until_they_fade() {
-    for bond in ["running", "flemish", "herringbone"] {
+    for bond in ["running", "flemish", "herringbone", "spanish"] {
         let inputs =
             json!({ "bond": bond, "columns": 1, "rows": 2, "output": "random", "seed": 3 });
         held("brick", &inputs, 0.3, [[1e-3; 2], [0.065, 0.02]]);
@@ -202,7 +212,7 @@ fn random_bricks_are_filtered_until_they_fade() {
 
 #[test]
 fn bevelled_bricks_have_their_mean_and_nearly_their_variance() {
-    for bond in ["running", "herringbone"] {
+    for bond in ["running", "herringbone", "spanish"] {
         let inputs = json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": 0.1, "bevel": 0.3 });
         held("brick", &inputs, 0.7, [[tolerance(), 0.05]; 2]);
     }
@@ -217,7 +227,7 @@ fn every_place_belongs_to_one_brick() {
             ..Footprint::default()
         })
         .collect();
-    for bond in ["running", "english", "flemish", "herringbone", "basket"] {
+    for bond in BONDS {
         let inputs =
             json!({ "bond": bond, "columns": 1.3, "rows": 2.7, "mortar": 0, "row_offset": 0.3 });
         let values = &evaluated(&graph("brick", &inputs), Method::Point, &places)[0];

@@ -177,3 +177,56 @@ fn lengths_and_directions() {
     let jump: &[Inputs<'_>] = &[&[(-0.5, &[0.1]), (0.0, &[0.0, 0.1])]];
     law("atan2", &angle, jump, [1e-3, 5e-3]);
 }
+
+/// Colours of a normal map: flat, leaning, and of a footprint whose normals differ much.
+const NORMALS: &[Inputs<'static>] = &[
+    &[(0.5, &[0.1]), (0.5, &[0.0, 0.1]), (0.95, &[0.0, 0.0, 0.03])],
+    &[
+        (0.7, &[0.05]),
+        (0.35, &[0.05, 0.08]),
+        (0.9, &[-0.02, 0.02, 0.02]),
+    ],
+    &[
+        (0.5, &[0.2]),
+        (0.6, &[0.1, 0.15]),
+        (0.85, &[0.0, 0.0, 0.05]),
+    ],
+];
+
+#[test]
+fn normals_of_a_map() {
+    let color =
+        json!({ "type": "combine3", "inputs": { "in1": node(0), "in2": node(1), "in3": node(2) } });
+    let unit = |[x, y, z]: [f64; 3]| {
+        let length = (x * x + y * y + z * z).sqrt();
+        vec![x / length, y / length, z / length]
+    };
+    let map = json!({ "map": color });
+    let inputs = json!({ "in": { "node": "map" }, "scale": 1.2 });
+    let law = |inputs_of: &[Inputs<'static>], tolerances| {
+        Law {
+            node: json!({ "type": "normalmap", "inputs": inputs, "extra_nodes": map }),
+            exact: &|x| {
+                let [x, y, z] = [0, 1, 2].map(|i| 2.0 * x[i] - 1.0);
+                unit([1.2 * x, 1.2 * y, z])
+            },
+            inputs: inputs_of,
+            tolerances,
+        }
+        .check();
+    };
+    law(&NORMALS[..2], [1e-3, 6e-3]);
+    law(NORMALS, [0.02, 0.04]);
+    // Two numbers, a vector, and a scale that varies.
+    let varying = json!({ "in": { "node": "p" }, "scale": node(2) });
+    Law {
+        node: json!({ "type": "normalmap", "inputs": varying, "extra_nodes": { "p": point(0, 1) } }),
+        exact: &|x| {
+            let [x, y] = [0, 1].map(|i| x[2] * (2.0 * x[i] - 1.0));
+            unit([x, y, 1.0])
+        },
+        inputs: &[&[(0.6, &[0.1]), (0.3, &[0.05, 0.1]), (1.0, &[0.0, 0.0, 0.3])]],
+        tolerances: [1e-3, 6e-3],
+    }
+    .check();
+}

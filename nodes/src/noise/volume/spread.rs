@@ -10,15 +10,15 @@ const WIDEST: f32 = 1.0e4;
 
 /// S = Σ/a² of a position in cells, a being the width of the kernel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spread {
+pub(in crate::noise) struct Spread {
     /// In the order of [`PAIRS`].
-    pub(super) covariance: [Value; 6],
+    pub(in crate::noise) covariance: [Value; 6],
     /// The adjugate, S⁻¹ det S.
-    pub(super) adjugate: [Value; 6],
+    pub(in crate::noise) adjugate: [Value; 6],
     /// det S, 0 for a surface that nothing displaces.
-    pub(super) determinant: Value,
+    pub(in crate::noise) determinant: Value,
     /// tr S.
-    pub(super) trace: Value,
+    pub(in crate::noise) trace: Value,
 }
 
 /// P = (I + S)⁻¹.
@@ -34,7 +34,7 @@ pub(super) struct Inverse {
 
 impl Spread {
     /// Of a position (x, y, z), for a kernel of this width in cells; zero where signals carry none.
-    pub(super) fn of(b: &mut Builder, position: &[Signal], width: f32) -> Self {
+    pub(in crate::noise) fn of(b: &mut Builder, position: &[Signal], width: f32) -> Self {
         assert_eq!(position.len(), 3, "a position in space");
         // One factor for all keeps the shape.
         let mut total = b.f32(0.0);
@@ -115,7 +115,7 @@ impl Spread {
     }
 
     /// The largest standard deviation on the surface: the root of the larger of two eigenvalues.
-    pub(super) fn size(&self, b: &mut Builder) -> Value {
+    pub(in crate::noise) fn size(&self, b: &mut Builder) -> Value {
         let [x, y, z] = [0, 3, 5].map(|at| self.adjugate[at]);
         let minors = b.add(x, y);
         let minors = b.add(minors, z);
@@ -130,7 +130,7 @@ impl Spread {
     }
 
     /// The parameters of a function that takes it over, in the order of [`Spread::captures`].
-    pub(super) fn declare(b: &mut Builder) -> Self {
+    pub(in crate::noise) fn declare(b: &mut Builder) -> Self {
         let axes = ["x", "y", "z"];
         let mut matrix =
             |name: &str| PAIRS.map(|[i, j]| b.param_f32(format!("{name}_{}{}", axes[i], axes[j])));
@@ -143,7 +143,7 @@ impl Spread {
         }
     }
 
-    pub(super) fn captures(&self) -> Vec<Value> {
+    pub(in crate::noise) fn captures(&self) -> Vec<Value> {
         let mut all = self.covariance.to_vec();
         all.extend(self.adjugate);
         all.extend([self.determinant, self.trace]);

@@ -110,6 +110,22 @@ fn normals_of_waves_and_noises() {
 }
 
 #[test]
+fn normals_of_a_map() {
+    let noise = json!({ "type": "fractal2d", "inputs": { "frequency": 4, "amplitude": 1 } });
+    let of = |steep: f32, scale: f32| {
+        let mut nodes = normal(&noise, steep);
+        nodes["map"] = nodes["x"].take();
+        let inputs = json!({ "in": { "node": "map" }, "scale": scale });
+        nodes["x"] = json!({ "type": "normalmap", "inputs": inputs });
+        nodes
+    };
+    // Slopes of standard deviations of 0.35, 0.7 and 1.4.
+    held("gentle", &of(0.5, 1.0), [0.024, 0.006, 0.1]);
+    held("normal", &of(1.0, 1.0), [0.075, 0.02, 0.18]);
+    held("steep", &of(1.0, 2.0), [0.16, 0.05, 0.26]);
+}
+
+#[test]
 fn blurs_of_patterns_and_noises() {
     let wall = json!({ "type": "brick", "inputs": { "columns": 3, "rows": 6, "mortar": 0.1 } });
     let nodes = json!({ "sharp": wall });
