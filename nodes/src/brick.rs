@@ -34,7 +34,7 @@ static SPEC: NodeSpec = NodeSpec {
             coordinate. Each pulse has its closed form (a sum over its edges up to \
             σ = 0.11 periods, six damped harmonics beyond). Up to a correlation of the coordinates of 1/2 the \
             mean of a product is four terms of Mehler's series; of a larger one a part that both \
-            share is integrated by the trapezoid rule, 21 nodes for 8:1 at 45 degrees. Without a bevel the variance is P(1 − P); with one, that of a pulse with the same mean \
+            share is integrated by the trapezoid rule, 19 nodes for 8:1 at 45 degrees. Without a bevel the variance is P(1 − P); with one, that of a pulse with the same mean \
             square, approximate. Random numbers are weighted by the share of the footprint that \
             each brick holds, and fade to their mean, 1/2, where the footprint covers many unit \
             cells: from 0.5 cells of √det Σ, or 1.1 cells along a coordinate after the shared part. Of varying parameters the means are used.",

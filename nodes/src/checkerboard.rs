@@ -23,7 +23,7 @@ static SPEC: NodeSpec = NodeSpec {
             Each wave has its closed form (a sum of Φ over the edges up to σ = 0.22 \
             squares, six damped harmonics beyond). Up to a correlation of the coordinates of 1/2 the \
             mean of a product is four terms of Mehler's series; of a larger one a part that both \
-            share is integrated by the trapezoid rule, 21 nodes for 8:1 at 45 degrees. Variance P(1 − P). Over a large footprint the mean is (color1 + color2)/2.",
+            share is integrated by the trapezoid rule, 19 nodes for 8:1 at 45 degrees. Variance P(1 − P). Over a large footprint the mean is (color1 + color2)/2.",
         accuracy: "The mean is within 1e-5 of the difference of the colours for footprints along the \
             axes and within 2e-3 for rotated ones up to 10:1; longer ones are blurred across to \
             10:1. Held by `nodes/src/pattern/tests.rs` against dense sums.",

@@ -21,7 +21,7 @@ static SPEC: NodeSpec = NodeSpec {
         statistics: "1 less the product of two pulses (the open part of a cell along u and along v), \
             summed over even and odd rows where staggered, each in closed form. Up to a correlation of the coordinates of 1/2 the \
             mean of a product is four terms of Mehler's series; of a larger one a part that both \
-            share is integrated by the trapezoid rule, 21 nodes for 8:1 at 45 degrees. Variance P(1 − P).",
+            share is integrated by the trapezoid rule, 19 nodes for 8:1 at 45 degrees. Variance P(1 − P).",
         accuracy: "The mean is within 1e-5 for footprints along the axes and within 2e-3 for rotated \
             ones up to 10:1; longer ones are blurred across to 10:1. Held by \
             `nodes/src/pattern/tests.rs` against dense sums.",

@@ -5,7 +5,7 @@
 //! four terms are within 1e-3 up to ρ = ½. Of a larger one r is taken apart: the coordinates are
 //! m + w t + √(1 − r) (σ₁ε₁, ±σ₂ε₂), w = √r (σ₁, ±σ₂), with a standard t and with ε₁ and ε₂ of the
 //! correlation ½. What is left is one integral over t of a function that is smooth at the scale
-//! √((1 − r)/r): three nodes to r = 0.15, then the trapezoid rule at 1.5 of it, within ±4.1. Where the
+//! √((1 − r)/r): three nodes to r = 0.15, then the trapezoid rule at 1.6 of it, within ±3.7. Where the
 //! rest alone covers the unit cell, one node is enough.
 //!
 //! Correlations are limited to [`MOST_CORRELATED`]: 10:1 at 45 degrees. A longer footprint keeps its
@@ -28,17 +28,17 @@ const EXPANDED: f32 = 0.5;
 const THREE_NODES: f32 = 0.15;
 
 /// Nodes are at most this far from each other, in standard deviations of t.
-const WIDEST_STEP: f32 = 1.5;
+const WIDEST_STEP: f32 = 1.6;
 
 /// … and in the scale at which the function of t is smooth.
-const SMOOTH_STEP: f32 = 1.5;
+const SMOOTH_STEP: f32 = 1.6;
 
 /// From this standard deviation on, in unit cells, a coordinate leaves its mean of every pulse: the first
 /// harmonic has 1.6e-3 left.
 const SETTLED: f32 = 0.55;
 
 /// Where the integral over t ends.
-const REACH: f32 = 4.1;
+const REACH: f32 = 3.7;
 
 /// A coefficient times at most one pulse a coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -321,7 +321,7 @@ impl Taps {
         let minus = b.f32(-1.0);
         let sign = b.select(negative, minus, one);
         let sd = [sx, sy].map(|s| b.mul(s, root_left));
-        // 1/step² = 1/1.5² + r/(1.5² (1 − r)).
+        // 1/step² = 1/1.6² + r/(1.6² (1 − r)).
         let ratio = b.div(shared, left);
         let ratio = b.scale(ratio, 1.0 / (SMOOTH_STEP * SMOOTH_STEP));
         let inverse = b.offset(ratio, 1.0 / (WIDEST_STEP * WIDEST_STEP));
