@@ -33,6 +33,9 @@ const CROSSOVER: f32 = 0.11;
 /// How many harmonics.
 const HARMONICS: usize = 6;
 
+/// Up to this width, in parts, what a ramp half a part away adds is below 1e-5.
+const SHORT_RAMP: f32 = 0.15;
+
 /// A live ramp is at least this wide, and at least 0.02 σ: its hinges then keep their digits.
 const NARROWEST: f32 = 1e-4;
 
@@ -161,18 +164,30 @@ impl Pulse {
         out
     }
 
-    /// The edges at −h, h and 1 − h, seen from a distance in [0, ½].
+    /// The edges at −h, h and 1 − h, seen from a distance in [0, ½]. Of the two that rise one is more than
+    /// half a part away, and left out unless its ramp may come nearer.
     fn edges(&self, b: &mut Builder, distance: Value, sd: Value) -> [Value; 4] {
         let one = b.f32(1.0);
         let inverse = b.div(one, sd);
         let (below, above) = (b.sub(distance, self.half), b.add(distance, self.half));
         let next = b.offset(above, -1.0);
-        let rising = [above, next].map(|from| self.edge(b, from, sd, inverse));
         let falling = self.edge(b, below, sd, inverse);
-        [0, 1, 2, 3].map(|i| {
-            let sum = b.add(rising[0][i], rising[1][i]);
-            b.sub(sum, falling[i])
-        })
+        if b.as_constant(self.bevel).is_none_or(|w| w > SHORT_RAMP) {
+            let rising = [above, next].map(|from| self.edge(b, from, sd, inverse));
+            return [0, 1, 2, 3].map(|i| {
+                let sum = b.add(rising[0][i], rising[1][i]);
+                b.sub(sum, falling[i])
+            });
+        }
+        let (middle, zero) = (b.f32(0.5), b.f32(0.0));
+        let is_own = b.lt(above, middle);
+        let from = b.select(is_own, above, next);
+        // What lies behind the next pulse's edge lies behind this one's, too.
+        let passed = b.select(is_own, zero, one);
+        let rising = self.edge(b, from, sd, inverse);
+        let mut out = [0, 1, 2, 3].map(|i| b.sub(rising[i], falling[i]));
+        out[0] = b.add(out[0], passed);
+        out
     }
 
     /// A rising edge at a distance: its mean and derivatives, each times as many σ.
