@@ -278,8 +278,8 @@ impl Outline {
         b.finish(module)
     }
 
-    /// The distances from the origin of the axes between which all edges lie, for axes A and B of
-    /// length 1 and no E.
+    /// The distances from the origin of the axes, which lies inside, between which all edges lie: for
+    /// orthogonal axes A and B of length 1 and no E.
     pub(crate) fn distances(&self) -> [f32; 2] {
         let corners: Vec<[f32; 2]> = self.vertices.iter().map(|&[x, y, _]| [x, y]).collect();
         let nearest = corners.iter().enumerate().map(|(i, &[x1, y1])| {
