@@ -18,4 +18,5 @@ pub(crate) mod ridge;
 pub(crate) mod source;
 pub(crate) mod spectral;
 pub(crate) mod volume;
+mod window;
 pub(crate) mod worley;

@@ -12,10 +12,10 @@
 
 use mipless::{Footprint, Method, Options, Program, Texture};
 use mipless_codegen::cpu::{Evaluator, Scratch};
+use mipless_tests::timing::{defaults, fastest};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Instant;
 
 /// The targets for `auto`: the median and the worst error over all graphs and windows, linear.
 const MEDIAN_ERROR: f64 = 0.02;
@@ -169,7 +169,7 @@ fn measure(graph: &Graph, pixel: f64, quick: bool) -> Row {
     let times = (!quick).then(|| {
         let programs = [Method::Point, Method::Local, Method::Quad, Method::Auto];
         let programs = programs.map(|m| compile(m, 0));
-        let [point, local, quad, auto] = times(&programs, &footprints);
+        let [point, local, quad, auto] = fastest(&programs, &footprints, RUNS);
         let pixel = 1e9 / footprints.len() as f64;
         Times {
             point: point * pixel,
@@ -184,15 +184,6 @@ fn measure(graph: &Graph, pixel: f64, quick: bool) -> Row {
         errors,
         times,
     }
-}
-
-fn defaults(program: &Program) -> Vec<f32> {
-    program
-        .interface
-        .parameters
-        .iter()
-        .flat_map(|p| p.default.clone())
-        .collect()
 }
 
 /// All outputs of all pixels as a display takes them: from 0 to 1.
@@ -224,28 +215,6 @@ fn rms(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len(), "numbers of results");
     let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
     (squares / a.len() as f64).sqrt()
-}
-
-/// Seconds for the whole window on one thread. The programs take turns, so that what else the
-/// machine does falls on all of them.
-fn times<const N: usize>(programs: &[Program; N], footprints: &[Footprint]) -> [f64; N] {
-    let evaluators = programs.each_ref().map(Evaluator::<f32>::of_program);
-    let parameters = programs.each_ref().map(defaults);
-    let (mut scratch, mut outputs) = (Scratch::new(), Vec::new());
-    let mut least = [f64::INFINITY; N];
-    for _ in 0..RUNS {
-        for i in 0..N {
-            let start = Instant::now();
-            evaluators[i].evaluate_footprints(
-                &mut scratch,
-                footprints,
-                &parameters[i],
-                &mut outputs,
-            );
-            least[i] = least[i].min(start.elapsed().as_secs_f64());
-        }
-    }
-    least
 }
 
 fn header() {

@@ -5,9 +5,8 @@
 //! wavelengths of the finest noise that all chains have, k from −3 to 3. The first row is that noise
 //! alone.
 
-use mipless::{Footprint, Method, Options, Texture};
-use mipless_codegen::cpu::{Evaluator, Scratch};
-use std::time::Instant;
+use mipless::{Footprint, Method, Options, Program, Texture};
+use mipless_tests::timing::fastest;
 
 const PIXELS: usize = 1 << 11;
 const RUNS: usize = 60;
@@ -94,17 +93,16 @@ fn main() {
             r#"{{"version":1,"name":"chain","nodes":{{{nodes}}},"outputs":{{"out":{{"node":"o"}}}}}}"#
         ))
         .unwrap_or_else(|mistakes| panic!("{name}: {}", mistakes[0]));
-        let evaluators = [Method::Point, Method::Local].map(|method| {
-            let options = Options {
+        let programs = [Method::Point, Method::Local].map(|method| {
+            texture.compile(&Options {
                 method,
                 ..Options::default()
-            };
-            Evaluator::<f32>::of_program(&texture.compile(&options))
+            })
         });
         let mut fastest = f64::INFINITY;
         let mut ratios: Vec<f64> = (-3..=3)
             .map(|k| {
-                let [point, local] = times(&evaluators, WAVELENGTH * 4f32.powi(k));
+                let [point, local] = times(&programs, WAVELENGTH * 4f32.powi(k));
                 fastest = fastest.min(point);
                 local / point
             })
@@ -116,8 +114,8 @@ fn main() {
     }
 }
 
-/// Nanoseconds a pixel, the least of several runs; the evaluators take turns.
-fn times(evaluators: &[Evaluator<f32>; 2], pixel: f32) -> [f64; 2] {
+/// Nanoseconds a pixel.
+fn times(programs: &[Program; 2], pixel: f32) -> [f64; 2] {
     let footprints: Vec<Footprint> = (0..PIXELS)
         .map(|i| Footprint {
             cell: [0; 2],
@@ -126,14 +124,5 @@ fn times(evaluators: &[Evaluator<f32>; 2], pixel: f32) -> [f64; 2] {
             dv: [0.0, pixel],
         })
         .collect();
-    let (mut scratch, mut outputs) = (Scratch::new(), Vec::new());
-    let mut least = [f64::INFINITY; 2];
-    for _ in 0..RUNS {
-        for (evaluator, least) in evaluators.iter().zip(&mut least) {
-            let start = Instant::now();
-            evaluator.evaluate_footprints(&mut scratch, &footprints, &[], &mut outputs);
-            *least = least.min(start.elapsed().as_secs_f64());
-        }
-    }
-    least.map(|seconds| seconds * 1e9 / PIXELS as f64)
+    fastest(programs, &footprints, RUNS).map(|seconds| seconds * 1e9 / PIXELS as f64)
 }

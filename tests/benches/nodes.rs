@@ -3,10 +3,9 @@
 //! `cargo bench -p mipless-tests --bench nodes [-- NAME…]` prints Markdown: nanoseconds a pixel on one
 //! core of the CPU by `point`, and how many times that `local` takes under footprints of three sizes.
 
-use mipless::{Footprint, Method, Options, Program};
-use mipless_codegen::cpu::{Evaluator, Scratch};
+use mipless::{Footprint, Method, Options};
 use mipless_tests::case::{Case, examples};
-use std::time::Instant;
+use mipless_tests::timing::fastest;
 
 /// The sides of the pixels, in units of texture space.
 const PIXELS: [f32; 3] = [1.0 / 512.0, 1.0 / 32.0, 1.0];
@@ -48,12 +47,9 @@ fn measure(case: &Case) -> (f64, [f64; PIXELS.len()]) {
             ..Options::default()
         })
     });
-    let parameters: Vec<f32> = (programs[0].interface.parameters.iter())
-        .flat_map(|p| p.default.clone())
-        .collect();
     let mut point = f64::INFINITY;
     let ratios = PIXELS.map(|pixel| {
-        let [alone, filtered] = times(&programs, &footprints(pixel), &parameters);
+        let [alone, filtered] = fastest(&programs, &footprints(pixel), RUNS);
         point = point.min(alone);
         filtered / alone
     });
@@ -75,19 +71,4 @@ fn footprints(pixel: f32) -> Vec<Footprint> {
             }
         })
         .collect()
-}
-
-/// Seconds for all pixels; the programs take turns.
-fn times(programs: &[Program; 2], footprints: &[Footprint], parameters: &[f32]) -> [f64; 2] {
-    let evaluators = programs.each_ref().map(Evaluator::<f32>::of_program);
-    let (mut scratch, mut outputs) = (Scratch::new(), Vec::new());
-    let mut least = [f64::INFINITY; 2];
-    for _ in 0..RUNS {
-        for (evaluator, least) in evaluators.iter().zip(&mut least) {
-            let start = Instant::now();
-            evaluator.evaluate_footprints(&mut scratch, footprints, parameters, &mut outputs);
-            *least = least.min(start.elapsed().as_secs_f64());
-        }
-    }
-    least
 }

@@ -16,6 +16,7 @@ pub mod case;
 pub mod generated;
 pub mod random;
 pub mod random_graph;
+pub mod timing;
 pub mod tolerance;
 
 use mipless::Method;

@@ -18,6 +18,7 @@ mod impulse;
 
 use super::bend::localized;
 use super::field::{Field, Spread};
+use super::window::count;
 use energy::energies;
 use impulse::{Kernel, row};
 use mipless_codegen::Lower;
@@ -160,14 +161,6 @@ pub(crate) fn filtered(
         .collect()
 }
 
-/// ⌈needed⌉ between the least and the most.
-fn count(b: &mut Builder, needed: Value, least: f32) -> Value {
-    let minus = b.neg(needed);
-    let floor = b.floor(minus);
-    let up = b.neg(floor);
-    b.clamp(up, least, MOST)
-}
-
 /// How many rows and columns an unfiltered kernel needs: its diameter, and half a cell on average
 /// for the place of an impulse within its cell.
 fn least(gabor: Gabor) -> f32 {
@@ -265,7 +258,8 @@ fn build(module: &mut Module, mode: Mode, gabor: Gabor, complex: bool) -> Functi
     let (full_rows, full_columns) = (b.max(rows, lowest), b.max(columns, lowest));
     let rows = b.select(still, full_rows, rows);
     let columns = b.select(still, full_columns, columns);
-    let (rows, columns) = (count(&mut b, rows, 1.0), count(&mut b, columns, 1.0));
+    let [[rows, row_count], [columns, column_count]] =
+        [rows, columns].map(|needed| count(&mut b, needed, [1.0, MOST]));
 
     // It fades to nothing before it is dropped.
     let amplitude = b.sqrt(guarded);
@@ -279,11 +273,7 @@ fn build(module: &mut Module, mode: Mode, gabor: Gabor, complex: bool) -> Functi
     let fade = b.mul(by_amplitude, by_reach);
     let gone = b.le(fade, zero);
     let none = b.u32(0);
-    let row_count = b.trunc_i(rows);
-    let row_count = b.cast_u(row_count);
     let row_count = b.select(gone, none, row_count);
-    let column_count = b.trunc_i(columns);
-    let column_count = b.cast_u(column_count);
     let start = impulse::window(&mut b, y, rows);
     let mut captures = vec![
         start,

@@ -24,6 +24,7 @@ use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
 use super::lattice::{Octaves, parts};
 use super::octave::Octave;
 use super::remainder::{remainder, share};
+use super::window::{count, start};
 use energy::{Footprint, energies};
 use fit::{Fit, Shape};
 use grid::Grid;
@@ -208,9 +209,9 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
 
     let used = b.mul(by_window, window.fade);
     let is_used = b.lt(zero, used);
-    let [count, rows] = window::count(&mut b, window.rows);
+    let [points, rows] = count(&mut b, window.rows, window::COUNTS);
     let rows = b.select(is_used, rows, none);
-    let start_y = window::start_of(&mut b, state.fractions[1], count);
+    let start_y = start(&mut b, state.fractions[1], points);
     let mut captures = vec![start_y, window.rows, window.columns, window.shear];
     captures.extend(grid);
     captures.extend(state.fractions);

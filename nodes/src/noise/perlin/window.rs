@@ -6,6 +6,7 @@ use super::grid::Grid;
 use super::{Kind, NAMES};
 use crate::noise::hash::corner;
 use crate::noise::lattice::{derivatives, parts};
+use crate::noise::window::{count, start};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 
@@ -114,24 +115,6 @@ fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionR
 /// The fewest and the most lattice points of a row, and rows.
 pub(super) const COUNTS: [f32; 2] = [2.0, 112.0];
 
-/// ⌈needed⌉ within [`COUNTS`], a real and a u32.
-pub(super) fn count(b: &mut Builder, needed: Value) -> [Value; 2] {
-    let minus = b.neg(needed);
-    let floor = b.floor(minus);
-    let up = b.neg(floor);
-    let count = b.clamp(up, COUNTS[0], COUNTS[1]);
-    let turns = b.trunc_i(count);
-    [count, b.cast_u(turns)]
-}
-
-/// The lattice coordinate that a window of `count` (a real) points around `x` starts at.
-pub(super) fn start_of(b: &mut Builder, x: Value, count: Value) -> Value {
-    let half = b.scale(count, -0.5);
-    let start = b.add(x, half);
-    let start = b.floor(start);
-    b.offset(start, 1.0)
-}
-
 /// One lattice row of filtered kernels, the body of a fold over rows.
 pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
     let kernel = kernel(module, kind, mode, tiles);
@@ -139,14 +122,14 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let mut b = Builder::new(format!("{}_row", kind.name()), doc);
     let index = b.param("index", Type::U32);
     let sums = sums(&mut b, mode);
-    let start = b.param_f32("start_y");
+    let first = b.param_f32("start_y");
     let (rows, columns) = (b.param_f32("rows"), b.param_f32("columns"));
     let shear = b.param_f32("shear");
     let grid = Grid::declare(&mut b, tiles);
     let (x, y) = (b.param_f32("x"), b.param_f32("y"));
     let shape = declare(&mut b);
     let offset = b.float_u(index);
-    let place = b.add(start, offset);
+    let place = b.add(first, offset);
     let dy = b.sub(y, place);
     let word = grid.word(&mut b, 1, place);
     // The row's largest envelope lies where d_x = (T₁₂/T₂₂) d_y.
@@ -161,8 +144,8 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let left = b.max(left, zero);
     let left = b.sqrt(left);
     let columns = b.mul(columns, left);
-    let [columns, turns] = count(&mut b, columns);
-    let start = start_of(&mut b, centre, columns);
+    let [columns, turns] = count(&mut b, columns, COUNTS);
+    let start = start(&mut b, centre, columns);
     let mut captures = vec![start, x, dy, word];
     captures.extend(grid.captures());
     captures.extend(self::captures(&shape));

@@ -2,6 +2,7 @@
 
 use super::points::Points;
 use super::{Kind, NAMES, PAIRS, place, quadrupole, quintic};
+use crate::noise::window::{count, start};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// What every kernel of an octave needs of the footprint: P and I + S.
@@ -58,14 +59,6 @@ fn kernel(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> Functio
     builder.finish(module)
 }
 
-/// The place (relative to the cell, a real) that `count` lattice points around `x` start at.
-pub(super) fn start(b: &mut Builder, x: Value, count: Value) -> Value {
-    let half = b.scale(count, -0.5);
-    let start = b.add(x, half);
-    let start = b.floor(start);
-    b.offset(start, 1.0)
-}
-
 /// The fewest and the most lattice points of a row, rows of a slice, and slices.
 pub(super) const COUNTS: [f32; 2] = [2.0, 48.0];
 
@@ -85,12 +78,7 @@ pub(super) fn window(b: &mut Builder, needed: Value, left: Option<Value>) -> [Va
             b.max(within, least)
         }
     };
-    let minus = b.neg(needed);
-    let floor = b.floor(minus);
-    let up = b.neg(floor);
-    let count = b.clamp(up, COUNTS[0], COUNTS[1]);
-    let turns = b.trunc_i(count);
-    [count, b.cast_u(turns)]
+    count(b, needed, COUNTS)
 }
 
 /// What is left of 1 at an offset (in units of the kernel's width) from the middle of an axis whose

@@ -1,6 +1,6 @@
 //! One octave of the noise in space.
 
-use super::kernel::{COUNTS, slice, start, window};
+use super::kernel::{COUNTS, slice, window};
 use super::points::Points;
 use super::spread::{Inverse, Spread};
 use super::{Kind, NAMES, PAIRS, parts, place, quadrupole, quintic};
@@ -8,6 +8,7 @@ use crate::noise::lattice::Octaves;
 use crate::noise::octave::Octave;
 use crate::noise::perlin::HANDOVER;
 use crate::noise::remainder::{remainder, share};
+use crate::noise::window::start;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 

@@ -6,6 +6,7 @@
 use super::points::Points;
 use super::{PAIRS, WIDTH, place};
 use crate::noise::hash::direction;
+use crate::noise::window::start;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// κ of the unfiltered noise: √3 π^{−3/4} a^{−3/2}.
@@ -191,7 +192,7 @@ impl Point {
         let three = b.f32(3.0);
         let mut points = points;
         let offsets = [0, 1, 2].map(|axis| {
-            let place = super::kernel::start(b, fractions[axis], three);
+            let place = start(b, fractions[axis], three);
             points = points.moved(b, axis, place);
             let offset = b.sub(fractions[axis], place);
             b.scale(offset, 1.0 / WIDTH)
