@@ -36,7 +36,10 @@ fn main() {
         println!("| {name} | {point:.0} | {near:.2} | {middle:.2} | {far:.2} |");
     }
     all.sort_by(f64::total_cmp);
-    println!("| median | | {:.2} | | |", all[all.len() / 2]);
+    match all.get(all.len() / 2) {
+        Some(median) => println!("| median | | {median:.2} | | |"),
+        None => println!("\nno node has that name"),
+    }
 }
 
 /// Nanoseconds a pixel by `point`, and `local` relative to it under each size of pixel.

@@ -64,6 +64,18 @@ pub(crate) fn split(b: &mut Builder, axis: &Signal) -> [Value; 2] {
     }
 }
 
+/// The same of all coordinates, in order.
+fn places(b: &mut Builder, position: &[Signal]) -> Vec<Value> {
+    position.iter().flat_map(|axis| split(b, axis)).collect()
+}
+
+/// Reports a footprint of this standard deviation, in cells.
+fn report(lower: &mut Lower<'_>, sd: Value) {
+    // The spectrum of a box has half its energy below a third of a cycle per cell.
+    let size = lower.b().scale(sd, 1.0 / 3.0);
+    lower.source_footprint(size);
+}
+
 /// The probability that two independent places of a Gaussian spread along one axis lie in one cell:
 /// E[max(1 − |t|, 0)] of their difference t, of standard deviation τ = σ√2.
 pub(crate) fn coincidence(b: &mut Builder, variance: Value) -> Value {
@@ -94,16 +106,11 @@ pub(crate) fn filtered(
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position);
     let size = lower.b().sqrt(spread.eigenvalues[0]);
-    // The spectrum of a box has half its energy below a third of a cycle per cell.
-    let size = lower.b().scale(size, 1.0 / 3.0);
-    lower.source_footprint(size);
+    report(lower, size);
     let key = format!("cells {mode:?} {seed} {period}");
     let function = lower.function(&key, |module| build(module, mode, seed, period));
     let b = lower.b();
-    let mut arguments = Vec::new();
-    for axis in position {
-        arguments.extend(split(b, axis));
-    }
+    let mut arguments = places(b, position);
     if mode.filters() {
         arguments.extend(spread.covariance);
         arguments.extend(spread.eigenvalues);

@@ -3,7 +3,7 @@
 //! A cell weighs what of the Gaussian lies in it, so that means, slopes and covariances are sums over
 //! the cells of a window, as in the plane; what does not fit fades to what cells have on average.
 
-use super::{coincidence, counted, fading, split, window};
+use super::{coincidence, counted, fading, report, split, window};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::{Mode, Normal, Signal};
@@ -130,9 +130,7 @@ pub(crate) fn filtered(lower: &mut Lower<'_>, place: &Signal, line: &Line<'_>) -
     let raised = b.offset(variance, 1e-12);
     let (sd, one, zero) = (b.sqrt(raised), b.f32(1.0), b.f32(0.0));
     let inverse = b.div(one, sd);
-    // As in the plane.
-    let size = b.scale(sd, 1.0 / 3.0);
-    lower.source_footprint(size);
+    report(lower, sd);
     let key = format!("cells of a line {}", line.key);
     let body = lower.function(&key, |module| one_more(module, channels, line));
     let b = lower.b();

@@ -4,7 +4,8 @@
 //! that they have given it, and what they are over a layer is what they are over a plane of cells.
 
 use super::{
-    Filtered, Plane, Slice, coincidence, counted, fading, lattice_seed, number, row, split, window,
+    Filtered, Plane, Slice, coincidence, counted, fading, lattice_seed, number, places, report,
+    row, window,
 };
 use crate::noise::period::wrapped;
 use crate::noise::volume::{Spread, at};
@@ -22,16 +23,11 @@ pub(crate) fn filtered(
     let mode = lower.mode();
     let spread = Spread::of(lower.b(), position, 1.0);
     let size = spread.size(lower.b());
-    // As in the plane.
-    let size = lower.b().scale(size, 1.0 / 3.0);
-    lower.source_footprint(size);
+    report(lower, size);
     let key = format!("cells in space {mode:?} {seed} {period}");
     let function = lower.function(&key, |module| build(module, mode, seed, period));
     let b = lower.b();
-    let mut arguments = Vec::new();
-    for axis in position {
-        arguments.extend(split(b, axis));
-    }
+    let mut arguments = places(b, position);
     if mode.filters() {
         arguments.extend(spread.captures());
     }
