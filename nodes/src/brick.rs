@@ -2,12 +2,11 @@
 
 use crate::componentwise::product;
 use crate::grid::TEXCOORD;
-use crate::pattern::bond::{Bond, Brick};
-use crate::pattern::pulse::Pulse;
+use crate::pattern::bond::Bond;
 use crate::pattern::random::numbered;
-use crate::pattern::separable::{Pattern, Soft, Term, filtered};
+use crate::pattern::separable::{Pattern, filtered};
 use crate::pattern::slope::report_bricks;
-use mipless_codegen::ir::{Builder, Value};
+use crate::pattern::wall::Wall;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -142,34 +141,6 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-/// A brick's pulse along a coordinate of which the unit cell has `cell` units, with joints and
-/// bevels in those units. `square` gives a pulse whose mean is that of the square.
-fn pulse(
-    b: &mut Builder,
-    cell: f32,
-    (centre, size): (Value, f32),
-    [mortar, bevel]: [Value; 2],
-    square: bool,
-) -> Pulse {
-    let size = b.f32(size);
-    let face = b.sub(size, mortar);
-    let zero = b.f32(0.0);
-    let face = b.max(face, zero);
-    let outer = b.scale(face, 0.5);
-    let bevel = b.min(bevel, outer);
-    let drop = b.scale(bevel, if square { 2.0 / 3.0 } else { 0.5 });
-    let half = b.sub(outer, drop);
-    // The derivative of a squared ramp has this share of the spread of the ramp's.
-    let bevel = b.scale(bevel, if square { 0.816_496_6 } else { 1.0 });
-    let [centre, half, bevel] = [centre, half, bevel].map(|v| b.scale(v, 1.0 / cell));
-    Pulse {
-        repeat: 1.0,
-        centre,
-        half,
-        bevel,
-    }
-}
-
 fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let bond = Bond::named(lower.choice(node, "bond"));
     let texcoord = lower.bundle(node, "texcoord");
@@ -199,32 +170,15 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let edges = [mortar_x, bevel_x, mortar, bevel];
     report_bricks(lower, &texcoord, [columns, rows], edges);
     let b = lower.b();
-    let terms = |square: bool| {
-        move |b: &mut Builder, p: &[Value]| {
-            let wall = bond.bricks(b, p[0]);
-            let terms = wall.iter().map(|&Brick { centre, size }| {
-                let x = pulse(b, cell[0], (centre[0], size[0]), [p[1], p[2]], square);
-                let y = pulse(b, cell[1], (centre[1], size[1]), [p[3], p[4]], square);
-                Term::product(x, y)
-            });
-            (0.0, terms.collect())
-        }
-    };
     let sharp = b.is_zero(bevel);
     let width = [
         b.scale(bevel_x, 1.0 / cell[0]),
         b.scale(bevel, 1.0 / cell[1]),
     ];
-    let (faces, squares) = (terms(false), terms(true));
-    let soft = Soft {
-        squares: &squares,
-        width,
-    };
     let pattern = Pattern {
-        key: format!("brick {bond:?}"),
+        cell: &Wall { bond },
         parameters: vec![offset, mortar_x, bevel_x, mortar, bevel],
-        terms: &faces,
-        soft: (!sharp).then_some(soft),
+        ramps: (!sharp).then_some(width),
     };
     vec![filtered(lower, &position, &pattern)]
 }

@@ -9,7 +9,7 @@ use mipless_graph::{
 
 use crate::componentwise::{binary, difference, product};
 use crate::pattern::pulse::Pulse;
-use crate::pattern::separable::{Pattern, Term, filtered};
+use crate::pattern::separable::{Pattern, Term, Terms, filtered};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "checkerboard",
@@ -95,23 +95,27 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 
 fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let position = tiled(lower, node, [0.5, 0.5]);
-    let pattern = Pattern {
+    let terms = Terms {
         key: "checkerboard".to_owned(),
-        parameters: Vec::new(),
-        terms: &|b, _| {
+        of: &|b, _| {
             let quarter = b.f32(0.25);
             let pulse = Pulse {
                 repeat: 1.0,
                 centre: quarter,
                 half: quarter,
                 bevel: b.f32(0.0),
+                short: true,
             };
             let (x, y) = (Some(pulse), Some(pulse));
             let terms = [(-1.0, x, None), (-1.0, None, y), (2.0, x, y)];
             let terms = terms.map(|(coefficient, x, y)| Term { coefficient, x, y });
             (1.0, terms.to_vec())
         },
-        soft: None,
+    };
+    let pattern = Pattern {
+        cell: &terms,
+        parameters: Vec::new(),
+        ramps: None,
     };
     // 1 where the sum of the cells is even.
     let parity = filtered(lower, &position, &pattern);

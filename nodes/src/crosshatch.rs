@@ -3,7 +3,7 @@
 use crate::checkerboard::tiled;
 use crate::grid::{TEXCOORD, UVOFFSET, UVTILING};
 use crate::pattern::pulse::Pulse;
-use crate::pattern::separable::{Pattern, Term, filtered};
+use crate::pattern::separable::{Pattern, Term, Terms, filtered};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -82,10 +82,9 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     // Both coordinates of the diagonals are whole on the lines; a cell across is √2 of theirs.
     let position = [x.sub(b, &y), x.add(b, &y)];
     let thickness = b.clamp(thickness, 0.0, 1.0);
-    let pattern = Pattern {
+    let terms = Terms {
         key: "crosshatch".to_owned(),
-        parameters: vec![thickness],
-        terms: &|b, parameters| {
+        of: &|b, parameters| {
             let reach = b.scale(parameters[0], std::f32::consts::FRAC_1_SQRT_2);
             let half = b.f32(0.5);
             let open = b.sub(half, reach);
@@ -95,10 +94,15 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
                 centre: half,
                 half: b.max(open, zero),
                 bevel: zero,
+                short: true,
             };
             (1.0, vec![Term::product(pulse, pulse).times(-1.0)])
         },
-        soft: None,
+    };
+    let pattern = Pattern {
+        cell: &terms,
+        parameters: vec![thickness],
+        ramps: None,
     };
     let lines = filtered(lower, &position, &pattern);
     vec![lines; 3]

@@ -2,7 +2,7 @@
 
 use crate::checkerboard::tiled;
 use crate::pattern::pulse::Pulse;
-use crate::pattern::separable::{Pattern, Term, filtered};
+use crate::pattern::separable::{Pattern, Term, Terms, filtered};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -115,10 +115,9 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let thickness = lower.number(node, "thickness");
     let b = lower.b();
     let thickness = b.clamp(thickness, 0.0, 1.0);
-    let pattern = Pattern {
+    let terms = Terms {
         key: format!("grid {staggered}"),
-        parameters: vec![thickness],
-        terms: &|b, parameters| {
+        of: &|b, parameters| {
             let one = b.f32(1.0);
             let open = b.sub(one, parameters[0]);
             let half = b.scale(open, 0.5);
@@ -128,6 +127,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
                 centre: b.f32(centre),
                 half,
                 bevel,
+                short: true,
             };
             let middle = pulse(0.5, half);
             if !staggered {
@@ -140,6 +140,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
                 centre: b.f32(centre),
                 half: low,
                 bevel,
+                short: true,
             };
             let (even, odd) = (row(0.25), row(0.75));
             let rows = [(middle, even), (shifted, odd)];
@@ -148,7 +149,11 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
                 rows.map(|(x, y)| Term::product(x, y).times(-1.0)).to_vec(),
             )
         },
-        soft: None,
+    };
+    let pattern = Pattern {
+        cell: &terms,
+        parameters: vec![thickness],
+        ramps: None,
     };
     let lines = filtered(lower, &position, &pattern);
     vec![lines; 3]

@@ -12,6 +12,8 @@ pub(crate) mod slope;
 pub(crate) mod soft;
 #[cfg(test)]
 mod tests;
+pub(crate) mod taps;
 pub(crate) mod tiling;
 pub(crate) mod touch;
 pub(crate) mod triangle;
+pub(crate) mod wall;

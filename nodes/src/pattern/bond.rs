@@ -23,9 +23,20 @@ pub(crate) enum Bond {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Brick {
     /// The centre.
-    pub(crate) centre: [Value; 2],
+    pub(crate) centre: [f32; 2],
+    /// Whether the running bond's offset is added to the centre's x.
+    pub(crate) shifted: bool,
     /// Width and height.
     pub(crate) size: [f32; 2],
+}
+
+impl Brick {
+    /// The centre for an offset of the running bond.
+    pub(crate) fn place(&self, b: &mut Builder, offset: Value) -> [Value; 2] {
+        let [x, y] = self.centre.map(|v| b.f32(v));
+        // The shift moves the pattern along +x, so that the brick's start moves with it.
+        [if self.shifted { b.add(offset, x) } else { x }, y]
+    }
 }
 
 impl Bond {
@@ -55,20 +66,10 @@ impl Bond {
         }
     }
 
-    /// The bricks of a unit cell; those that leave it on one side enter it on the other. `offset`
-    /// shifts the odd rows of the running bond.
-    pub(crate) fn bricks(self, b: &mut Builder, offset: Value) -> Vec<Brick> {
-        let fixed: Vec<[f32; 4]> = match self {
-            Self::Running => {
-                // The shift moves the pattern along +x, so that the brick's start moves with it.
-                let middle = b.offset(offset, 0.5);
-                let first = [0.5, 0.5].map(|x| b.f32(x));
-                let second = [middle, b.f32(1.5)];
-                let size = [1.0, 1.0];
-                return [first, second]
-                    .map(|centre| Brick { centre, size })
-                    .to_vec();
-            }
+    /// The bricks of a unit cell; those that leave it on one side enter it on the other.
+    pub(crate) fn bricks(self) -> Vec<Brick> {
+        let rows: Vec<[f32; 4]> = match self {
+            Self::Running => vec![[0.5, 0.5, 1.0, 1.0], [0.5, 1.5, 1.0, 1.0]],
             // A header stands in the middle of every joint and of every stretcher.
             Self::English => vec![
                 [0.5, 0.5, 1.0, 1.0],
@@ -113,9 +114,10 @@ impl Bond {
                 [0.75, 1.5, 0.5, 1.0],
             ],
         };
-        (fixed.into_iter())
-            .map(|[x, y, width, height]| Brick {
-                centre: [x, y].map(|v| b.f32(v)),
+        (rows.into_iter().enumerate())
+            .map(|(i, [x, y, width, height])| Brick {
+                centre: [x, y],
+                shifted: self == Self::Running && i == 1,
                 size: [width, height],
             })
             .collect()

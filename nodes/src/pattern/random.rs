@@ -6,7 +6,8 @@
 
 use super::bond::{Bond, Brick};
 use super::pulse::Axis;
-use super::separable::{Taps, by_place, joined, orders, phase, rest};
+use super::separable::{orders, phase, rest};
+use super::taps::{Taps, by_place, joined};
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -125,9 +126,15 @@ fn number(b: &mut Builder, cells: [Value; 2], brick: u32, seed: Value) -> Value 
 }
 
 /// The brick's centre and size in unit cells.
-fn in_cells(b: &mut Builder, bond: Bond, brick: &Brick) -> ([Value; 2], [f32; 2]) {
+fn in_cells(
+    b: &mut Builder,
+    bond: Bond,
+    brick: &Brick,
+    offset: Value,
+) -> ([Value; 2], [f32; 2]) {
     let cell = bond.cell();
-    let centre = [0, 1].map(|i| b.scale(brick.centre[i], 1.0 / cell[i]));
+    let centre = brick.place(b, offset);
+    let centre = [0, 1].map(|i| b.scale(centre[i], 1.0 / cell[i]));
     (centre, [0, 1].map(|i| brick.size[i] / cell[i]))
 }
 
@@ -146,8 +153,8 @@ fn point_function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> Functi
     let seed = b.param("seed", Type::U32);
     let offset = offset_parameter(&mut b, fixed);
     let mut sum = b.f32(0.5);
-    for (i, brick) in bond.bricks(&mut b, offset).iter().enumerate() {
-        let (centre, size) = in_cells(&mut b, bond, brick);
+    for (i, brick) in bond.bricks().iter().enumerate() {
+        let (centre, size) = in_cells(&mut b, bond, brick, offset);
         let (zero, one) = (b.f32(0.0), b.f32(1.0));
         let mut inside = one;
         // The copy of the brick whose centre is next.
@@ -346,8 +353,8 @@ fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let fade = b.mul(fade, kept);
     let gone = b.le(fade, zero);
     let mut sums = [zero; SUMS.len()];
-    for (i, brick) in bond.bricks(&mut b, offset).iter().enumerate() {
-        let (centre, size) = in_cells(&mut b, bond, brick);
+    for (i, brick) in bond.bricks().iter().enumerate() {
+        let (centre, size) = in_cells(&mut b, bond, brick, offset);
         let from = [0, 1].map(|k| b.sub(axes[k].mean, centre[k]));
         let half = size.map(|size| b.f32(0.5 * size));
         let [[start_x, count_x], [start_y, count_y]] =

@@ -1,0 +1,218 @@
+//! A wall of bricks with joints and ramps, averaged over two Gaussians.
+//!
+//! The bricks of the unit cell are rows of a table. Those that the footprint reaches are bits of a
+//! number, and are summed one after the other: near a corner three, within a face one, and all of them
+//! only where the footprint covers the cell. Bricks do not overlap, so the square of the wall is the
+//! sum of their squares.
+
+use super::bond::{Bond, Brick};
+use super::pulse::{Axis, Pulse, SHORT_RAMP, Series};
+use super::separable::{Cell, Place, Wanted};
+use super::taps::{by_place, joined};
+use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+
+/// How far a footprint reaches, in standard deviations: what lies beyond is 3e-5 of it.
+const REACH: f32 = 4.0;
+
+/// A wall; its parameters are the running bond's offset, then joint and ramp along x and along y, in
+/// bricks and rows.
+pub(crate) struct Wall {
+    /// How its bricks are laid.
+    pub(crate) bond: Bond,
+}
+
+impl Cell for Wall {
+    fn key(&self) -> String {
+        format!("brick {:?}", self.bond)
+    }
+
+    fn value(&self, b: &mut Builder, parameters: &[Value], at: [Value; 2]) -> Value {
+        let mut sum = b.f32(0.0);
+        for brick in self.bond.bricks() {
+            let centre = brick.place(b, parameters[0]);
+            let size = brick.size.map(|size| b.f32(size));
+            let pulses = self.pulses(b, centre, size, &parameters[1..]);
+            let [x, y] = [0, 1].map(|k| pulses[k].value(b, at[k]));
+            let part = b.mul(x, y);
+            sum = b.add(sum, part);
+        }
+        sum
+    }
+
+    fn averaged(
+        &self,
+        b: &mut Builder,
+        module: &mut Module,
+        parameters: &[Value],
+        place: &Place,
+        of: Wanted,
+    ) -> Vec<Value> {
+        let bricks = self.bond.bricks();
+        let known: Vec<Option<f32>> = parameters.iter().map(|&v| b.as_constant(v)).collect();
+        let body = self.brick(module, &bricks, &known, of);
+        let (mut touched, mut count) = (b.u32(0), b.u32(0));
+        let (none, one) = (b.u32(0), b.u32(1));
+        for (i, brick) in bricks.iter().enumerate() {
+            let near = self.reached(b, brick, parameters[0], &place.axes);
+            let bit = b.u32(1 << i);
+            let bit = b.select(near, bit, none);
+            touched = b.or_u(touched, bit);
+            let more = b.select(near, one, none);
+            count = b.add_u(count, more);
+        }
+        let zero = b.f32(0.0);
+        let mut state = vec![touched];
+        state.resize(1 + of.orders + usize::from(of.squared), zero);
+        let [x, y] = place.axes;
+        let mut captures = vec![x.mean, y.mean, x.sd, y.sd, place.correlation];
+        captures.extend(
+            (parameters.iter().zip(&known))
+                .filter(|(_, known)| known.is_none())
+                .map(|(&v, _)| v),
+        );
+        let mut out = b.fold(&body, count, &state, &captures).split_off(1);
+        by_place(b, &mut out[..of.orders], place.axes.map(|axis| axis.sd));
+        out
+    }
+}
+
+impl Wall {
+    /// The pulses of a brick's face along both coordinates, in unit cells.
+    fn pulses(
+        &self,
+        b: &mut Builder,
+        centre: [Value; 2],
+        size: [Value; 2],
+        joints: &[Value],
+    ) -> [Pulse; 2] {
+        [0, 1].map(|k| {
+            let (joint, ramp) = (joints[2 * k], joints[2 * k + 1]);
+            let cell = self.bond.cell()[k];
+            let face = b.sub(size[k], joint);
+            let zero = b.f32(0.0);
+            let face = b.max(face, zero);
+            let outer = b.scale(face, 0.5);
+            let short = b.as_constant(ramp).is_some_and(|w| w / cell <= SHORT_RAMP);
+            let ramp = b.min(ramp, outer);
+            let lost = b.scale(ramp, 0.5);
+            let half = b.sub(outer, lost);
+            let [centre, half, bevel] =
+                [centre[k], half, ramp].map(|v| b.scale(v, 1.0 / cell));
+            Pulse {
+                repeat: 1.0,
+                centre,
+                half,
+                bevel,
+                short,
+            }
+        })
+    }
+
+    /// Whether a brick, with its joints, is within reach.
+    fn reached(
+        &self,
+        b: &mut Builder,
+        brick: &Brick,
+        offset: Value,
+        axes: &[Axis; 2],
+    ) -> Value {
+        let centre = brick.place(b, offset);
+        let mut near = b.bool(true);
+        for k in [0, 1] {
+            let cell = self.bond.cell()[k];
+            let half = 0.5 * brick.size[k] / cell;
+            if half >= 0.5 {
+                continue;
+            }
+            let centre = b.scale(centre[k], 1.0 / cell);
+            let from = b.sub(axes[k].mean, centre);
+            let rounded = b.offset(from, 0.5);
+            let rounded = b.floor(rounded);
+            let from = b.sub(from, rounded);
+            let distance = b.abs(from);
+            let reach = b.scale(axes[k].sd, REACH);
+            let reach = b.offset(reach, half);
+            let along = b.lt(distance, reach);
+            near = b.and(near, along);
+        }
+        near
+    }
+
+    /// One more brick of those whose bits are set, the body of a fold.
+    fn brick(
+        &self,
+        module: &mut Module,
+        bricks: &[Brick],
+        known: &[Option<f32>],
+        of: Wanted,
+    ) -> FunctionRef {
+        let rows: Vec<f32> = (bricks.iter())
+            .flat_map(|brick| {
+                let [x, y] = brick.centre;
+                let [width, height] = brick.size;
+                let shift = if brick.shifted { 1.0 } else { 0.0 };
+                [x, y, width, height, shift]
+            })
+            .collect();
+        let width = (rows.len() / bricks.len()) as u32;
+        let table = module.table("bricks", rows);
+        let doc = "One more brick within reach.";
+        let mut builder = Builder::new("brick_face", doc);
+        let b = &mut builder;
+        b.param("index", Type::U32);
+        let touched = b.param("touched", Type::U32);
+        let names = ["mean", "dx", "dy", "dxx", "dxy", "dyy"];
+        let mut names: Vec<&str> = names[..of.orders].to_vec();
+        names.extend(of.squared.then_some("square"));
+        let sums: Vec<Value> = names.iter().map(|name| b.param_f32(*name)).collect();
+        let [x, y, sd_x, sd_y, correlation] =
+            ["x", "y", "sd_x", "sd_y", "correlation"].map(|name| b.param_f32(name));
+        let names_of = ["offset", "joint_x", "ramp_x", "joint_y", "ramp_y"];
+        let parameters: Vec<Value> = (names_of.iter().zip(known))
+            .map(|(name, known)| match known {
+                Some(v) => b.f32(*v),
+                None => b.param_f32(*name),
+            })
+            .collect();
+        // The lowest bit, and which one it is: the exponent of a number.
+        let zero = b.u32(0);
+        let negative = b.sub_u(zero, touched);
+        let bit = b.and_u(touched, negative);
+        let left = b.xor_u(touched, bit);
+        let number = b.float_u(bit);
+        let bits = b.bits(number);
+        let (mantissa, bias) = (b.u32(23), b.u32(127));
+        let exponent = b.shr_u(bits, mantissa);
+        let which = b.sub_u(exponent, bias);
+        let stride = b.u32(width);
+        let first = b.mul_u(which, stride);
+        let mut entry = |i: u32| {
+            let i = b.u32(i);
+            let at = b.add_u(first, i);
+            b.load(table, at)
+        };
+        let mut centre = [entry(0), entry(1)];
+        let size = [entry(2), entry(3)];
+        if bricks.iter().any(|brick| brick.shifted) {
+            let shift = entry(4);
+            let shift = b.mul(shift, parameters[0]);
+            centre[0] = b.add(centre[0], shift);
+        }
+        let pulses = self.pulses(b, centre, size, &parameters[1..]);
+        let axes = [(x, sd_x), (y, sd_y)].map(|(mean, sd)| Axis { mean, sd });
+        let mut series = Series::default();
+        let [x, y] = [0, 1].map(|k| {
+            pulses[k].moments(b, (&mut *module, &mut series), axes[k], of.squared)
+        });
+        let mut parts = joined(b, x.own, y.own, correlation)[..of.orders].to_vec();
+        if let (Some(x), Some(y)) = (x.square, y.square) {
+            parts.push(joined(b, x, y, correlation)[0]);
+        }
+        b.result("touched", left);
+        for ((name, sum), part) in names.iter().zip(sums).zip(parts) {
+            let sum = b.add(sum, part);
+            b.result(*name, sum);
+        }
+        builder.finish(module)
+    }
+}
