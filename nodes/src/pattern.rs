@@ -3,6 +3,7 @@
 pub(crate) mod angle;
 pub(crate) mod bond;
 pub(crate) mod figure;
+pub(crate) mod harmonics;
 pub(crate) mod pulse;
 pub(crate) mod random;
 pub(crate) mod region;
@@ -10,9 +11,9 @@ pub(crate) mod sawtooth;
 pub(crate) mod separable;
 pub(crate) mod slope;
 pub(crate) mod soft;
+pub(crate) mod taps;
 #[cfg(test)]
 mod tests;
-pub(crate) mod taps;
 pub(crate) mod tiling;
 pub(crate) mod touch;
 pub(crate) mod triangle;

@@ -1,5 +1,6 @@
 //! Where the bricks of a bond lie in its unit cell.
 
+use super::harmonics::Shear;
 use mipless_codegen::ir::{Builder, Value};
 
 /// How bricks are laid.
@@ -63,6 +64,26 @@ impl Bond {
             Self::Flemish => [1.5, 2.0],
             Self::Herringbone | Self::Basket => [2.0, 4.0],
             Self::Spanish => [1.5, 3.0],
+        }
+    }
+
+    /// A point around which a half turn leaves the wall as it is, in bricks and rows, and what makes the
+    /// cell primitive.
+    pub(crate) fn symmetry(self, offset: f64) -> ([f64; 2], Shear) {
+        let whole = Shear { lean: 0, tall: 1 };
+        // The middle of the cell is as its corners.
+        let centred = Shear { lean: 1, tall: 2 };
+        match self {
+            // Between a brick and the one above it.
+            Self::Running if offset == 0.5 => ([0.75, 1.0], centred),
+            Self::Running => ([0.5 + 0.5 * offset, 1.0], whole),
+            Self::English => ([0.5, 0.5], whole),
+            Self::Flemish => ([0.5, 0.5], centred),
+            // A half brick further and a row up all is the same.
+            Self::Herringbone => ([0.5, 0.5], Shear { lean: -1, tall: 4 }),
+            // Where four bricks meet that stand and lie in pairs.
+            Self::Basket => ([0.5, 1.0], centred),
+            Self::Spanish => ([0.75, 1.5], whole),
         }
     }
 

@@ -126,12 +126,7 @@ fn number(b: &mut Builder, cells: [Value; 2], brick: u32, seed: Value) -> Value 
 }
 
 /// The brick's centre and size in unit cells.
-fn in_cells(
-    b: &mut Builder,
-    bond: Bond,
-    brick: &Brick,
-    offset: Value,
-) -> ([Value; 2], [f32; 2]) {
+fn in_cells(b: &mut Builder, bond: Bond, brick: &Brick, offset: Value) -> ([Value; 2], [f32; 2]) {
     let cell = bond.cell();
     let centre = brick.place(b, offset);
     let centre = [0, 1].map(|i| b.scale(centre[i], 1.0 / cell[i]));

@@ -4,6 +4,7 @@
 //! wall ([`super::wall`]). What the coordinates share is integrated ([`super::taps`]); the rest is
 //! averaged in closed form.
 
+use super::harmonics::Spectrum;
 use super::pulse::{Axis, Moments, Pulse, Series};
 use super::taps::{Taps, by_place, joined};
 use crate::noise::field::{Field, Spread};
@@ -72,6 +73,12 @@ pub(crate) trait Cell {
         place: &Place,
         of: Wanted,
     ) -> Vec<Value>;
+
+    /// Its Fourier series, where that is shorter for wide footprints and the parameters are known.
+    fn spectrum(&self, parameters: &[Option<f32>]) -> Option<Spectrum> {
+        let _ = parameters;
+        None
+    }
 }
 
 /// Two Gaussians.
@@ -131,15 +138,17 @@ impl Cell for Terms<'_> {
         let mut out = vec![zero; of.orders];
         out[0] = b.f32(constant);
         for term in terms {
-            let [x, y] = [(term.x, place.axes[0]), (term.y, place.axes[1])].map(|(pulse, axis)| {
-                match pulse {
-                    Some(pulse) => {
-                        let Moments { own, .. } = pulse.moments(b, (&mut *module, &mut series), axis, false);
-                        own
-                    }
-                    None => [b.f32(1.0), zero, zero, zero],
-                }
-            });
+            let [x, y] =
+                [(term.x, place.axes[0]), (term.y, place.axes[1])].map(
+                    |(pulse, axis)| match pulse {
+                        Some(pulse) => {
+                            let Moments { own, .. } =
+                                pulse.moments(b, (&mut *module, &mut series), axis, false);
+                            own
+                        }
+                        None => [b.f32(1.0), zero, zero, zero],
+                    },
+                );
             let x = x.map(|v| b.scale(v, term.coefficient));
             for (sum, part) in out.iter_mut().zip(joined(b, x, y, place.correlation)) {
                 *sum = b.add(*sum, part);
@@ -196,10 +205,28 @@ pub(crate) fn filtered(
         // Writing to a string cannot fail.
         let _ = write!(key, " {constant:?}");
     }
-    let orders = orders(mode) + usize::from(!sharp && mode.spreads());
-    let tap = lower.function(&key, |module| tap(module, mode, pattern, &constants));
+    let of = Wanted {
+        orders: orders(mode),
+        squared: !sharp && mode.spreads(),
+    };
+    let moments = of.orders + usize::from(of.squared);
+    let tap = lower.function(&key, |module| tap(module, of, pattern, &constants));
+    let by_waves = pattern.cell.spectrum(&constants).map(|spectrum| {
+        let key = format!("{key} waves");
+        lower.function(&key, |module| spectrum.function(module, of))
+    });
     let b = lower.b();
-    let zero = b.f32(0.0);
+    let (zero, none) = (b.f32(0.0), b.u32(0));
+    let mut count = taps.count;
+    let mut wide = vec![zero; moments];
+    if let Some(function) = by_waves {
+        let mut arguments = vec![x, y];
+        arguments.extend(spread.covariance);
+        arguments.push(count);
+        wide = b.call(&function, &arguments);
+        let serves = wide[moments];
+        count = b.select(serves, none, count);
+    }
     let mut captures = vec![x, y];
     captures.extend(taps.captures());
     captures.extend(
@@ -207,12 +234,15 @@ pub(crate) fn filtered(
             .filter(|(_, constant)| constant.is_none())
             .map(|(&value, _)| value),
     );
-    let sums = b.fold(&tap, taps.count, &vec![zero; orders + 1], &captures);
-    let one = b.f32(1.0);
-    let inverse = b.div(one, sums[0]);
+    let sums = b.fold(&tap, count, &vec![zero; moments + 1], &captures);
+    // Of no nodes, everything is 0.
+    let (one, least) = (b.f32(1.0), b.f32(1e-30));
+    let weights = b.max(sums[0], least);
+    let inverse = b.div(one, weights);
     let mut at = |i: usize| {
-        if i < orders {
-            b.mul(sums[i + 1], inverse)
+        if i < moments {
+            let near = b.mul(sums[i + 1], inverse);
+            b.add(near, wide[i])
         } else {
             zero
         }
@@ -226,7 +256,7 @@ pub(crate) fn filtered(
         hessian: [3, 4, 5].map(|i| at(pick(curvatures, i))),
         rest: zero,
     };
-    let square = (!sharp && mode.spreads()).then(|| at(orders - 1));
+    let square = of.squared.then(|| at(of.orders));
     let b = lower.b();
     let mean = b.clamp(field.mean, 0.0, 1.0);
     let mut field = Field { mean, ..field };
@@ -336,14 +366,10 @@ pub(super) fn orders(mode: Mode) -> usize {
 /// then the mean of the square.
 fn tap(
     module: &mut Module,
-    mode: Mode,
+    of: Wanted,
     pattern: &Pattern<'_>,
     constants: &[Option<f32>],
 ) -> FunctionRef {
-    let of = Wanted {
-        orders: orders(mode),
-        squared: pattern.ramps.is_some() && mode.spreads(),
-    };
     let doc = "A pattern at one place of the footprint, averaged over what is left of it.";
     let name: String = (pattern.cell.key().chars())
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })

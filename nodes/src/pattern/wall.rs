@@ -6,10 +6,12 @@
 //! sum of their squares.
 
 use super::bond::{Bond, Brick};
+use super::harmonics::{Spectrum, names};
 use super::pulse::{Axis, Pulse, SHORT_RAMP, Series};
 use super::separable::{Cell, Place, Wanted};
 use super::taps::{by_place, joined};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use std::f64::consts::{PI, TAU};
 
 /// How far a footprint reaches, in standard deviations: what lies beyond is 3e-5 of it.
 const REACH: f32 = 4.0;
@@ -74,9 +76,56 @@ impl Cell for Wall {
         by_place(b, &mut out[..of.orders], place.axes.map(|axis| axis.sd));
         out
     }
+
+    fn spectrum(&self, parameters: &[Option<f32>]) -> Option<Spectrum> {
+        let parameters: Option<Vec<f64>> = (parameters.iter())
+            .map(|known| known.map(f64::from))
+            .collect();
+        let parameters = parameters?;
+        let (middle, shear) = self.bond.symmetry(parameters[0]);
+        let middle = [0, 1].map(|axis| middle[axis] / f64::from(self.bond.cell()[axis]));
+        let waves = |k, l| self.wave(&parameters, middle, [k, l]).map(|[even, _]| even);
+        Some(Spectrum::of(middle, shear, waves))
+    }
 }
 
 impl Wall {
+    /// The integrals over the unit cell of the wall and of its square times cos and sin of 2π times the
+    /// frequency times the distance from a point.
+    fn wave(&self, parameters: &[f64], from: [f64; 2], frequency: [f64; 2]) -> [[f64; 2]; 2] {
+        let mut sums = [[0.0; 2]; 2];
+        for brick in self.bond.bricks() {
+            let shift = if brick.shifted { parameters[0] } else { 0.0 };
+            let shift = [shift, 0.0];
+            let mut turns = 0.0;
+            let mut both = [1.0; 2];
+            for axis in [0, 1] {
+                let cell = f64::from(self.bond.cell()[axis]);
+                let centre = (f64::from(brick.centre[axis]) + shift[axis]) / cell;
+                turns += frequency[axis] * (centre - from[axis]);
+                let (joint, ramp) = (parameters[1 + 2 * axis], parameters[2 + 2 * axis]);
+                let outer = 0.5 * (f64::from(brick.size[axis]) - joint).max(0.0);
+                let ramp = ramp.min(outer);
+                // As of `Pulse`: a squared ramp rises later and has less spread.
+                let faces = [
+                    (outer - 0.5 * ramp, ramp),
+                    (outer - ramp * 2.0 / 3.0, ramp * 0.816_496_6),
+                ];
+                for (product, (half, ramp)) in both.iter_mut().zip(faces) {
+                    let (width, ramp) = (2.0 * half / cell, ramp / cell);
+                    *product *=
+                        width * sinc(frequency[axis] * width) * sinc(frequency[axis] * ramp);
+                }
+            }
+            let (sine, cosine) = (TAU * turns).sin_cos();
+            for (sum, product) in sums.iter_mut().zip(both) {
+                sum[0] += product * cosine;
+                sum[1] += product * sine;
+            }
+        }
+        sums
+    }
+
     /// The pulses of a brick's face along both coordinates, in unit cells.
     fn pulses(
         &self,
@@ -96,8 +145,7 @@ impl Wall {
             let ramp = b.min(ramp, outer);
             let lost = b.scale(ramp, 0.5);
             let half = b.sub(outer, lost);
-            let [centre, half, bevel] =
-                [centre[k], half, ramp].map(|v| b.scale(v, 1.0 / cell));
+            let [centre, half, bevel] = [centre[k], half, ramp].map(|v| b.scale(v, 1.0 / cell));
             Pulse {
                 repeat: 1.0,
                 centre,
@@ -109,13 +157,7 @@ impl Wall {
     }
 
     /// Whether a brick, with its joints, is within reach.
-    fn reached(
-        &self,
-        b: &mut Builder,
-        brick: &Brick,
-        offset: Value,
-        axes: &[Axis; 2],
-    ) -> Value {
+    fn reached(&self, b: &mut Builder, brick: &Brick, offset: Value, axes: &[Axis; 2]) -> Value {
         let centre = brick.place(b, offset);
         let mut near = b.bool(true);
         for k in [0, 1] {
@@ -161,9 +203,7 @@ impl Wall {
         let b = &mut builder;
         b.param("index", Type::U32);
         let touched = b.param("touched", Type::U32);
-        let names = ["mean", "dx", "dy", "dxx", "dxy", "dyy"];
-        let mut names: Vec<&str> = names[..of.orders].to_vec();
-        names.extend(of.squared.then_some("square"));
+        let names = names(of);
         let sums: Vec<Value> = names.iter().map(|name| b.param_f32(*name)).collect();
         let [x, y, sd_x, sd_y, correlation] =
             ["x", "y", "sd_x", "sd_y", "correlation"].map(|name| b.param_f32(name));
@@ -201,9 +241,8 @@ impl Wall {
         let pulses = self.pulses(b, centre, size, &parameters[1..]);
         let axes = [(x, sd_x), (y, sd_y)].map(|(mean, sd)| Axis { mean, sd });
         let mut series = Series::default();
-        let [x, y] = [0, 1].map(|k| {
-            pulses[k].moments(b, (&mut *module, &mut series), axes[k], of.squared)
-        });
+        let [x, y] =
+            [0, 1].map(|k| pulses[k].moments(b, (&mut *module, &mut series), axes[k], of.squared));
         let mut parts = joined(b, x.own, y.own, correlation)[..of.orders].to_vec();
         if let (Some(x), Some(y)) = (x.square, y.square) {
             parts.push(joined(b, x, y, correlation)[0]);
@@ -214,5 +253,55 @@ impl Wall {
             b.result(*name, sum);
         }
         builder.finish(module)
+    }
+}
+
+/// sin πx/(πx).
+fn sinc(x: f64) -> f64 {
+    let angle = PI * x;
+    if angle.abs() < 1e-9 {
+        1.0
+    } else {
+        angle.sin() / angle
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Bond, Wall};
+
+    #[test]
+    fn the_waves_of_a_wall_are_even_and_those_of_its_primitive_cell() {
+        for name in [
+            "running",
+            "english",
+            "flemish",
+            "herringbone",
+            "basket",
+            "spanish",
+        ] {
+            let bond = Bond::named(name);
+            for offset in [0.0, 0.3, 0.5] {
+                let parameters = [offset, 0.1, 0.2, 0.15, 0.3];
+                let (middle, shear) = bond.symmetry(offset);
+                let middle = [0, 1].map(|axis| middle[axis] / f64::from(bond.cell()[axis]));
+                let mut most = 0.0f64;
+                for k in -6..=6 {
+                    for l in -6..=6 {
+                        let frequency = [k, l].map(f64::from);
+                        let waves = Wall { bond }.wave(&parameters, middle, frequency);
+                        for [even, odd] in waves {
+                            assert!(odd.abs() < 1e-9, "{name} {offset} {k} {l}: {odd}");
+                            if (l - shear.lean * k) % shear.tall != 0 {
+                                assert!(even.abs() < 1e-9, "{name} {offset} {k} {l}: {even}");
+                            } else if k != 0 && l != 0 {
+                                most = most.max(even.abs());
+                            }
+                        }
+                    }
+                }
+                assert!(most > 1e-3, "{name} has waves");
+            }
+        }
     }
 }
