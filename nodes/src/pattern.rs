@@ -1,6 +1,7 @@
 //! Patterns of position, filtered by the footprint.
 
 pub(crate) mod angle;
+mod bits;
 pub(crate) mod bond;
 pub(crate) mod figure;
 pub(crate) mod harmonics;

@@ -1,7 +1,7 @@
 //! Where the bricks of a bond lie in its unit cell.
 
 use super::harmonics::Shear;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Builder, Module, Value};
 
 /// How bricks are laid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,55 @@ impl Brick {
         let [x, y] = self.centre.map(|v| b.f32(v));
         // The shift moves the pattern along +x, so that the brick's start moves with it.
         [if self.shifted { b.add(offset, x) } else { x }, y]
+    }
+}
+
+/// The bricks of a unit cell as a table of a module.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rows {
+    table: u32,
+    has_shift: bool,
+}
+
+impl Rows {
+    /// Of a bond.
+    pub(crate) fn of(module: &mut Module, bond: Bond) -> Self {
+        let bricks = bond.bricks();
+        let rows: Vec<f32> = (bricks.iter())
+            .flat_map(|brick| {
+                let ([x, y], [width, height]) = (brick.centre, brick.size);
+                [x, y, width, height, if brick.shifted { 1.0 } else { 0.0 }]
+            })
+            .collect();
+        Self {
+            table: module.table("bricks", rows),
+            has_shift: bricks.iter().any(|brick| brick.shifted),
+        }
+    }
+
+    /// Centre and size of one of them, in bricks and rows, for an offset of the running bond.
+    pub(crate) fn brick(
+        self,
+        b: &mut Builder,
+        which: Value,
+        offset: Value,
+    ) -> ([Value; 2], [Value; 2]) {
+        let width = b.u32(5);
+        let first = b.mul_u(which, width);
+        let mut entry = |i: u32| {
+            let i = b.u32(i);
+            let at = b.add_u(first, i);
+            b.load(self.table, at)
+        };
+        let [x, y, width, height] = [0, 1, 2, 3].map(&mut entry);
+        let x = if self.has_shift {
+            let shift = entry(4);
+            let shift = b.mul(shift, offset);
+            b.add(x, shift)
+        } else {
+            x
+        };
+        ([x, y], [width, height])
     }
 }
 

@@ -1,17 +1,20 @@
 //! A random number for each brick of a bond, filtered.
 //!
 //! Bricks with half of the joints around them cover the plane: the mean is ½ + Σ w (r − ½), with w
-//! the share of the footprint that a brick holds. Rows and columns within 3.8 σ are summed. Where
-//! that would be too many the sum fades to ½, whose share of the variance is that of the numbers.
+//! the share of the footprint that a brick holds. Narrow footprints sum the bricks that they reach,
+//! wide ones the tiles of the bricks. Where that would be too many the sum fades to ½, whose share of
+//! the variance is that of the numbers.
+
+mod near;
+mod wide;
 
 use super::bond::{Bond, Brick};
-use super::pulse::Axis;
 use super::separable::{orders, phase, rest};
-use super::taps::{Taps, by_place, joined};
+use super::taps::Taps;
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
-use mipless_codegen::moments::{Mode, Normal, Signal};
+use mipless_codegen::moments::{Mode, Signal};
 
 /// The variance of a uniform number in [0, 1].
 const VARIANCE: f32 = 1.0 / 12.0;
@@ -23,11 +26,11 @@ const ALONE: [f32; 2] = [1.1, 1.6];
 /// The same for √det Σ, the area of the whole footprint.
 const AREA: [f32; 2] = [0.5, 1.0];
 
-/// How far a footprint reaches, in standard deviations.
-const REACH: f32 = 3.8;
-
 /// The most copies along a coordinate.
 const MOST: f32 = 16.0;
+
+/// What tells the bricks of a cell apart, times their numbers.
+const BRICK: u32 = 0x85eb_ca6b;
 
 /// Sums of w(r − ½) and derivatives, and of w(r − ½)² and w.
 const SUMS: [&str; 8] = ["value", "dx", "dy", "dxx", "dxy", "dyy", "square", "weight"];
@@ -68,24 +71,41 @@ pub(crate) fn numbered(
         let value = b.call(&function, &arguments)[0];
         return Signal::certain(b, value).with_range([0.0, 1.0]);
     }
-    let tap = lower.function(&key, |module| tap(module, bond, fixed));
+    let tap = lower.function(&key, |module| near::tap(module, bond, fixed));
+    let tiles = lower.function(&format!("{key} wide"), |module| {
+        wide::function(module, bond, fixed)
+    });
     let b = lower.b();
-    let taps = Taps::of(b, spread.covariance);
     let zero = b.f32(0.0);
-    let mut captures = vec![place[0], place[1]];
-    captures.extend(taps.captures());
     let [xx, xy, yy] = spread.covariance;
     let (both, cross) = (b.mul(xx, yy), b.square(xy));
     let area = b.sub(both, cross);
     let area = b.max(area, zero);
     let area = b.sqrt(area);
-    captures.push(faded(b, area, AREA));
+    let kept = faded(b, area, AREA);
+    let taps = Taps::of(b, spread.covariance);
+    let (parts, is_wide) = wide::parts(b, bond, spread.covariance, taps.count);
+    let none = b.u32(0);
+    let count = b.select(is_wide, none, taps.count);
+    let mut captures = vec![place[0], place[1]];
+    captures.extend(taps.captures());
+    captures.push(kept);
     captures.extend([cells[0], cells[1], seed]);
     captures.extend(fixed.is_none().then_some(offset));
-    let sums = b.fold(&tap, taps.count, &[zero; SUMS.len() + 1], &captures);
-    let one = b.f32(1.0);
-    let inverse = b.div(one, sums[0]);
-    let sums: [Value; SUMS.len()] = std::array::from_fn(|i| b.mul(sums[i + 1], inverse));
+    let near = b.fold(&tap, count, &[zero; SUMS.len() + 1], &captures);
+    let kept = b.select(is_wide, kept, zero);
+    let mut arguments = vec![place[0], place[1], xx, xy, yy, parts[0], parts[1]];
+    arguments.extend([cells[0], cells[1], seed, kept]);
+    arguments.extend(fixed.is_none().then_some(offset));
+    let far = b.call(&tiles, &arguments);
+    // Of no nodes, everything is 0.
+    let (one, least) = (b.f32(1.0), b.f32(1e-30));
+    let weights = b.max(near[0], least);
+    let inverse = b.div(one, weights);
+    let sums: [Value; SUMS.len()] = std::array::from_fn(|i| {
+        let near = b.mul(near[i + 1], inverse);
+        b.add(near, far[i])
+    });
     let orders = orders(mode);
     let at = |i: usize| if i < orders { sums[i] } else { zero };
     let centred = b.clamp(sums[0], -0.5, 0.5);
@@ -107,16 +127,21 @@ pub(crate) fn numbered(
     field.at(lower, position).with_range([0.0, 1.0])
 }
 
-/// The number of a brick less ½: of its unit cell, and its place there.
-fn number(b: &mut Builder, cells: [Value; 2], brick: u32, seed: Value) -> Value {
+/// What the bricks of a row of cells share of their numbers; `which` is the brick's number times
+/// [`BRICK`].
+fn row_hash(b: &mut Builder, cell: Value, which: Value, seed: Value) -> Value {
     let factor = b.u32(0x9e37_79b1);
-    let [x, y] = cells.map(|cell| b.cast_u(cell));
+    let y = b.cast_u(cell);
     let y = b.mul_u(y, factor);
-    let which = b.u32(brick.wrapping_mul(0x85eb_ca6b));
     let y = b.add_u(y, which);
     let y = b.xor_u(y, seed);
-    let y = b.scramble(y);
-    let hash = b.xor_u(x, y);
+    b.scramble(y)
+}
+
+/// The number of a brick less ½, from its cell along x and what its row shares.
+fn random(b: &mut Builder, cell: Value, row: Value) -> Value {
+    let x = b.cast_u(cell);
+    let hash = b.xor_u(x, row);
     let hash = b.scramble(hash);
     let shift = b.u32(8);
     let leading = b.shr_u(hash, shift);
@@ -166,150 +191,13 @@ fn point_function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> Functi
             let whole = b.trunc_i(rounded);
             b.add_i(cells[k], whole)
         });
-        let number = number(&mut b, cells, i as u32, seed);
+        let which = b.u32((i as u32).wrapping_mul(BRICK));
+        let row = row_hash(&mut b, cells[1], which, seed);
+        let number = random(&mut b, cells[0], row);
         let part = b.mul(inside, number);
         sum = b.add(sum, part);
     }
     b.result("number", sum);
-    b.finish(module)
-}
-
-/// The share of a Gaussian between two places, and its derivatives by the mean, each times as many σ.
-fn share(b: &mut Builder, low: Value, high: Value, inverse: Value) -> [Value; 4] {
-    let (n, m) = (Normal::at(b, low, inverse), Normal::at(b, high, inverse));
-    let value = b.sub(n.below, m.below);
-    let slope = b.sub(n.density, m.density);
-    let (p, q) = (b.mul(n.z, n.density), b.mul(m.z, m.density));
-    let (steep_p, steep_q) = (b.mul(n.z, p), b.mul(m.z, q));
-    let third = b.sub(steep_p, steep_q);
-    [value, slope, b.sub(q, p), b.sub(third, slope)]
-}
-
-/// The first copy of a brick that the footprint reaches, from the mean's distance from a brick, and
-/// how many there are.
-fn window(b: &mut Builder, from: Value, half: Value, sd: Value) -> [Value; 2] {
-    let reach = b.scale(sd, REACH);
-    let reach = b.add(reach, half);
-    let (low, high) = (b.sub(from, reach), b.add(from, reach));
-    let (below, last) = (b.floor(low), b.floor(high));
-    let start = b.offset(below, 1.0);
-    let count = b.sub(last, below);
-    [start, b.clamp(count, 0.0, MOST)]
-}
-
-/// Names of the sums over a row: of w(r − ½) and its derivatives, of w(r − ½)² and its first, and of
-/// w.
-const LINE: [&str; 7] = [
-    "value",
-    "slope",
-    "bend",
-    "third",
-    "square",
-    "square_slope",
-    "weight",
-];
-
-/// The copies of one brick along a row, the body of a fold.
-fn column(module: &mut Module) -> FunctionRef {
-    let mut b = Builder::new("brick_column", "One more brick of a row.");
-    let index = b.param("index", Type::U32);
-    let state = LINE.map(|name| b.param_f32(name));
-    let [from, half, start, inverse] =
-        ["from", "half", "start", "inverse"].map(|name| b.param_f32(name));
-    let cell = b.param("cell_x", Type::I32);
-    let row = b.param("row", Type::U32);
-    let step = b.float_u(index);
-    let copy = b.add(start, step);
-    let whole = b.trunc_i(copy);
-    let cell = b.add_i(cell, whole);
-    let hash = b.cast_u(cell);
-    let hash = b.xor_u(hash, row);
-    let hash = b.scramble(hash);
-    let shift = b.u32(8);
-    let leading = b.shr_u(hash, shift);
-    let real = b.float_u(leading);
-    let real = b.scale(real, 1.0 / (1u32 << 24) as f32);
-    let number = b.offset(real, -0.5);
-    let distance = b.sub(from, copy);
-    let (low, high) = (b.add(distance, half), b.sub(distance, half));
-    let [w, slope, bend, third] = share(&mut b, low, high, inverse);
-    let (value, steep) = (b.mul(w, number), b.mul(slope, number));
-    let parts = [
-        value,
-        steep,
-        b.mul(bend, number),
-        b.mul(third, number),
-        b.mul(value, number),
-        b.mul(steep, number),
-        w,
-    ];
-    for ((name, sum), part) in LINE.into_iter().zip(state).zip(parts) {
-        let sum = b.add(sum, part);
-        b.result(name, sum);
-    }
-    b.finish(module)
-}
-
-/// The rows of copies of one brick, the body of a fold.
-fn row(module: &mut Module) -> FunctionRef {
-    let column = column(module);
-    let mut b = Builder::new("brick_row", "One more row of bricks.");
-    let index = b.param("index", Type::U32);
-    let state = SUMS.map(|name| b.param_f32(name));
-    let [
-        from_x,
-        from_y,
-        half_x,
-        half_y,
-        start_x,
-        start_y,
-        count,
-        inverse_x,
-        inverse_y,
-        correlation,
-    ] = [
-        "from_x",
-        "from_y",
-        "half_x",
-        "half_y",
-        "start_x",
-        "start_y",
-        "count",
-        "inverse_x",
-        "inverse_y",
-        "correlation",
-    ]
-    .map(|name| b.param_f32(name));
-    let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
-    let (which, seed) = (b.param("which", Type::U32), b.param("seed", Type::U32));
-    let step = b.float_u(index);
-    let copy = b.add(start_y, step);
-    let whole = b.trunc_i(copy);
-    let cell = b.add_i(cells[1], whole);
-    // As of `number`.
-    let factor = b.u32(0x9e37_79b1);
-    let hash = b.cast_u(cell);
-    let hash = b.mul_u(hash, factor);
-    let hash = b.add_u(hash, which);
-    let hash = b.xor_u(hash, seed);
-    let hash = b.scramble(hash);
-    let distance = b.sub(from_y, copy);
-    let (low, high) = (b.add(distance, half_y), b.sub(distance, half_y));
-    let y = share(&mut b, low, high, inverse_y);
-    let zero = b.f32(0.0);
-    let count = b.trunc_i(count);
-    let count = b.cast_u(count);
-    let captures = [from_x, half_x, start_x, inverse_x, cells[0], hash];
-    let line = b.fold(&column, count, &[zero; LINE.len()], &captures);
-    let x = [0, 1, 2, 3].map(|i| line[i]);
-    let mut parts = joined(&mut b, x, y, correlation).to_vec();
-    let joint = b.mul(correlation, y[1]);
-    parts.push(b.dot(&[line[4], line[5]], &[y[0], joint]));
-    parts.push(b.mul(y[0], line[6]));
-    for ((name, sum), part) in SUMS.into_iter().zip(state).zip(parts) {
-        let sum = b.add(sum, part);
-        b.result(name, sum);
-    }
     b.finish(module)
 }
 
@@ -319,75 +207,4 @@ fn faded(b: &mut Builder, x: Value, [from, to]: [f32; 2]) -> Value {
     let left = b.sub(top, x);
     let share = b.scale(left, 1.0 / (to - from));
     b.clamp(share, 0.0, 1.0)
-}
-
-/// One node of the integral over what both coordinates share.
-fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
-    let row = row(module);
-    let doc = "Random bricks at one place of the footprint, averaged over what is left of it.";
-    let mut b = Builder::new("brick_numbers", doc);
-    let index = b.param("index", Type::U32);
-    let total = b.param_f32("weights");
-    let state = SUMS.map(|name| b.param_f32(format!("sum_{name}")));
-    let place = [b.param_f32("x"), b.param_f32("y")];
-    let captures = Taps::NAMES.map(|name| b.param_f32(name));
-    let [.., correlation] = captures;
-    let kept = b.param_f32("kept");
-    let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
-    let seed = b.param("seed", Type::U32);
-    let offset = offset_parameter(&mut b, fixed);
-    let (axes, weight) = Taps::node(&mut b, index, place, captures);
-    let one = b.f32(1.0);
-    let inverse = axes.map(|Axis { sd, .. }| b.div(one, sd));
-    let zero = b.f32(0.0);
-    let (fx, fy) = (
-        faded(&mut b, axes[0].sd, ALONE),
-        faded(&mut b, axes[1].sd, ALONE),
-    );
-    let fade = b.mul(fx, fy);
-    let fade = b.mul(fade, kept);
-    let gone = b.le(fade, zero);
-    let mut sums = [zero; SUMS.len()];
-    for (i, brick) in bond.bricks().iter().enumerate() {
-        let (centre, size) = in_cells(&mut b, bond, brick, offset);
-        let from = [0, 1].map(|k| b.sub(axes[k].mean, centre[k]));
-        let half = size.map(|size| b.f32(0.5 * size));
-        let [[start_x, count_x], [start_y, count_y]] =
-            [0, 1].map(|k| window(&mut b, from[k], half[k], axes[k].sd));
-        // What has faded is not summed.
-        let count_y = b.select(gone, zero, count_y);
-        let which = b.u32((i as u32).wrapping_mul(0x85eb_ca6b));
-        let captures = [
-            from[0],
-            from[1],
-            half[0],
-            half[1],
-            start_x,
-            start_y,
-            count_x,
-            inverse[0],
-            inverse[1],
-            correlation,
-            cells[0],
-            cells[1],
-            which,
-            seed,
-        ];
-        let rows = b.trunc_i(count_y);
-        let rows = b.cast_u(rows);
-        let parts = b.fold(&row, rows, &[zero; SUMS.len()], &captures);
-        for (sum, part) in sums.iter_mut().zip(parts) {
-            *sum = b.add(*sum, part);
-        }
-    }
-    by_place(&mut b, &mut sums[..6], axes.map(|axis| axis.sd));
-    let weighted = b.mul(weight, fade);
-    let total = b.add(total, weight);
-    b.result("weights", total);
-    for ((name, sum), part) in SUMS.into_iter().zip(state).zip(sums) {
-        let part = b.mul(weighted, part);
-        let sum = b.add(sum, part);
-        b.result(format!("sum_{name}"), sum);
-    }
-    b.finish(module)
 }

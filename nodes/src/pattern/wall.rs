@@ -5,7 +5,8 @@
 //! only where the footprint covers the cell. Bricks do not overlap, so the square of the wall is the
 //! sum of their squares.
 
-use super::bond::{Bond, Brick};
+use super::bits;
+use super::bond::{Bond, Brick, Rows};
 use super::harmonics::{Spectrum, names};
 use super::pulse::{Axis, Pulse, SHORT_RAMP, Series};
 use super::separable::{Cell, Place, Wanted};
@@ -51,17 +52,11 @@ impl Cell for Wall {
     ) -> Vec<Value> {
         let bricks = self.bond.bricks();
         let known: Vec<Option<f32>> = parameters.iter().map(|&v| b.as_constant(v)).collect();
-        let body = self.brick(module, &bricks, &known, of);
-        let (mut touched, mut count) = (b.u32(0), b.u32(0));
-        let (none, one) = (b.u32(0), b.u32(1));
-        for (i, brick) in bricks.iter().enumerate() {
-            let near = self.reached(b, brick, parameters[0], &place.axes);
-            let bit = b.u32(1 << i);
-            let bit = b.select(near, bit, none);
-            touched = b.or_u(touched, bit);
-            let more = b.select(near, one, none);
-            count = b.add_u(count, more);
-        }
+        let body = self.brick(module, &known, of);
+        let near: Vec<Value> = (bricks.iter())
+            .map(|brick| self.reached(b, brick, parameters[0], &place.axes))
+            .collect();
+        let [touched, count] = bits::set(b, &near);
         let zero = b.f32(0.0);
         let mut state = vec![touched];
         state.resize(1 + of.orders + usize::from(of.squared), zero);
@@ -181,23 +176,8 @@ impl Wall {
     }
 
     /// One more brick of those whose bits are set, the body of a fold.
-    fn brick(
-        &self,
-        module: &mut Module,
-        bricks: &[Brick],
-        known: &[Option<f32>],
-        of: Wanted,
-    ) -> FunctionRef {
-        let rows: Vec<f32> = (bricks.iter())
-            .flat_map(|brick| {
-                let [x, y] = brick.centre;
-                let [width, height] = brick.size;
-                let shift = if brick.shifted { 1.0 } else { 0.0 };
-                [x, y, width, height, shift]
-            })
-            .collect();
-        let width = (rows.len() / bricks.len()) as u32;
-        let table = module.table("bricks", rows);
+    fn brick(&self, module: &mut Module, known: &[Option<f32>], of: Wanted) -> FunctionRef {
+        let rows = Rows::of(module, self.bond);
         let doc = "One more brick within reach.";
         let mut builder = Builder::new("brick_face", doc);
         let b = &mut builder;
@@ -214,30 +194,8 @@ impl Wall {
                 None => b.param_f32(*name),
             })
             .collect();
-        // The lowest bit, and which one it is: the exponent of a number.
-        let zero = b.u32(0);
-        let negative = b.sub_u(zero, touched);
-        let bit = b.and_u(touched, negative);
-        let left = b.xor_u(touched, bit);
-        let number = b.float_u(bit);
-        let bits = b.bits(number);
-        let (mantissa, bias) = (b.u32(23), b.u32(127));
-        let exponent = b.shr_u(bits, mantissa);
-        let which = b.sub_u(exponent, bias);
-        let stride = b.u32(width);
-        let first = b.mul_u(which, stride);
-        let mut entry = |i: u32| {
-            let i = b.u32(i);
-            let at = b.add_u(first, i);
-            b.load(table, at)
-        };
-        let mut centre = [entry(0), entry(1)];
-        let size = [entry(2), entry(3)];
-        if bricks.iter().any(|brick| brick.shifted) {
-            let shift = entry(4);
-            let shift = b.mul(shift, parameters[0]);
-            centre[0] = b.add(centre[0], shift);
-        }
+        let [which, left] = bits::lowest(b, touched);
+        let (centre, size) = rows.brick(b, which, parameters[0]);
         let pulses = self.pulses(b, centre, size, &parameters[1..]);
         let axes = [(x, sd_x), (y, sd_y)].map(|(mean, sd)| Axis { mean, sd });
         let mut series = Series::default();
