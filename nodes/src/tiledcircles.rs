@@ -86,6 +86,7 @@ pub(crate) fn tiles(lower: &mut Lower<'_>, node: &Node, tile: &Tile) -> Bundle {
         Lattice::Square
     };
     let position = cells(lower, node, [1.0, (1.0 / lattice.height()) as f32]);
-    let figures = tiled(lower, &position, lattice, tile);
+    let tiling = tile.on(lower.b(), lattice);
+    let figures = tiled(lower, &position, &tiling);
     vec![figures; 3]
 }

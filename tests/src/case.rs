@@ -80,7 +80,7 @@ pub fn examples() -> Vec<Case> {
 }
 
 /// What no graph and no example has: an input between the bends of a region, an amplitude from one,
-/// and a colour map from a picture.
+/// a colour map from a picture, and staggered lines of a width that is known and of one that is live.
 ///
 /// # Panics
 /// If one has mistakes.
@@ -113,9 +113,23 @@ pub fn further() -> Vec<Case> {
   },
   "outputs": { "out": { "node": "color" } }
 }"#;
-    [("live", live), ("picture", picture)]
-        .map(|(name, text)| Case::new(name, text))
-        .to_vec()
+    let hatches = r#"{
+  "version": 1,
+  "name": "staggered_crosshatch",
+  "inputs": { "width": { "type": "float", "value": 0.3, "min": 0, "max": 1 } },
+  "nodes": {
+    "known": { "type": "crosshatch", "inputs": { "uvtiling": [7, 9], "thickness": 0.1, "staggered": true } },
+    "live": { "type": "crosshatch", "inputs": { "uvtiling": [5, 4], "thickness": { "input": "width" }, "staggered": true } },
+    "both": { "type": "mix", "inputs": { "bg": { "node": "known" }, "fg": { "node": "live" }, "mix": 0.4 } }
+  },
+  "outputs": { "out": { "node": "both" } }
+}"#;
+    let cases = [
+        ("live", live),
+        ("picture", picture),
+        ("staggered_crosshatch", hatches),
+    ];
+    cases.map(|(name, text)| Case::new(name, text)).to_vec()
 }
 
 /// All graphs, then all examples, then what none of them has.

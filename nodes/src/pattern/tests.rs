@@ -1,5 +1,6 @@
 //! Filtered patterns against dense sums of the pattern itself.
 
+mod hatch;
 mod upstream;
 
 use crate::{catalogue, specs};
@@ -8,7 +9,7 @@ use mipless_codegen::{Method, Options, PixelFilter, compile};
 use mipless_graph::{CheckOptions, check, load};
 use serde_json::{Value, json};
 
-/// Means, then variances, in f64.
+/// Means, then variances, in f64, at the defaults of the graph's inputs.
 fn evaluated(text: &str, method: Method, footprints: &[Footprint]) -> Vec<Vec<f64>> {
     let loaded = load(text, &specs());
     let graph = loaded
@@ -25,7 +26,9 @@ fn evaluated(text: &str, method: Method, footprints: &[Footprint]) -> Vec<Vec<f6
         ..Options::default()
     };
     let program = compile(&checked, catalogue(), &options);
-    eval_program::<f64>(&program, footprints, &[])
+    let inputs = program.interface.parameters.iter();
+    let defaults: Vec<f32> = inputs.flat_map(|p| p.default.clone()).collect();
+    eval_program::<f64>(&program, footprints, &defaults)
 }
 
 /// A graph of one node.
@@ -61,6 +64,18 @@ fn footprints(size: f32, turned: bool, places: usize) -> Vec<Footprint> {
         .collect()
 }
 
+/// Φ at −6 and every [`STEP`] from there.
+fn masses() -> Vec<f64> {
+    let mut mass = 0.0;
+    (0..12_000)
+        .map(|i| {
+            let z = STEP * (f64::from(i) - 0.5) - 6.0;
+            mass += STEP * (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
+            mass
+        })
+        .collect()
+}
+
 /// Φ⁻¹ of a number in (0, 1), from a table of Φ.
 fn quantile(table: &[f64], p: f64) -> f64 {
     let after = table
@@ -80,14 +95,7 @@ fn dense(text: &str, footprints: &[Footprint], points: usize) -> Vec<[f64; 2]> {
 /// The same of each component, by the R2 sequence (Roberts 2018) of normal numbers: an edge is met by
 /// the same share of the points in any direction.
 fn dense_components(text: &str, footprints: &[Footprint], points: usize) -> Vec<Vec<[f64; 2]>> {
-    let mut mass = 0.0;
-    let table: Vec<f64> = (0..12_000)
-        .map(|i| {
-            let z = STEP * (f64::from(i) - 0.5) - 6.0;
-            mass += STEP * (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
-            mass
-        })
-        .collect();
+    let table = masses();
     let normal: Vec<[f64; 2]> = (0..points)
         .map(|i| {
             [0.754_877_666_246_693, 0.569_840_290_998_053]
@@ -325,7 +333,10 @@ fn waves_are_filtered_exactly() {
 #[test]
 fn hatches_and_leaves_are_filtered_exactly() {
     let bound = [[tolerance(); 2]; 2];
-    held("crosshatch", &json!({ "thickness": 0.25 }), 1.0, bound);
+    for staggered in [false, true] {
+        let inputs = json!({ "thickness": 0.25, "staggered": staggered });
+        held("crosshatch", &inputs, 1.0, bound);
+    }
     held("cloverleaf", &json!({ "center": [0.4, 0.6] }), 1.0, bound);
     let across = [[tolerance() + 5e-4; 2], [0.01; 2]];
     held("tiledcloverleafs", &json!({ "size": 0.8 }), 1.0, across);
