@@ -42,7 +42,7 @@ pub(crate) const SHORT_RAMP: f32 = 0.15;
 const NARROWEST: f32 = 1e-4;
 
 /// See [`NARROWEST`].
-const NARROWEST_OF_SD: f32 = 0.05;
+const NARROWEST_OF_SD: f32 = 0.02;
 
 /// The mean over a Gaussian and its first three derivatives by the coordinate's mean, each times as many
 /// σ.

@@ -75,7 +75,7 @@ pub(crate) trait Cell {
     ) -> Vec<Value>;
 
     /// Its Fourier series, where that is shorter for wide footprints and the parameters are known.
-    fn spectrum(&self, parameters: &[Option<f32>]) -> Option<Spectrum> {
+    fn spectrum(&self, parameters: &[Option<f32>]) -> Option<Spectrum<'_>> {
         let _ = parameters;
         None
     }
@@ -213,27 +213,28 @@ pub(crate) fn filtered(
     let tap = lower.function(&key, |module| tap(module, of, pattern, &constants));
     let by_waves = pattern.cell.spectrum(&constants).map(|spectrum| {
         let key = format!("{key} waves");
-        lower.function(&key, |module| spectrum.function(module, of))
+        lower.function(&key, |module| spectrum.function(module, of, &constants))
     });
     let b = lower.b();
     let (zero, none) = (b.f32(0.0), b.u32(0));
+    let live: Vec<Value> = (pattern.parameters.iter().zip(&constants))
+        .filter(|(_, constant)| constant.is_none())
+        .map(|(&value, _)| value)
+        .collect();
     let mut count = taps.count;
     let mut wide = vec![zero; moments];
     if let Some(function) = by_waves {
         let mut arguments = vec![x, y];
         arguments.extend(spread.covariance);
         arguments.push(count);
+        arguments.extend(live.iter().copied());
         wide = b.call(&function, &arguments);
         let serves = wide[moments];
         count = b.select(serves, none, count);
     }
     let mut captures = vec![x, y];
     captures.extend(taps.captures());
-    captures.extend(
-        (pattern.parameters.iter().zip(&constants))
-            .filter(|(_, constant)| constant.is_none())
-            .map(|(&value, _)| value),
-    );
+    captures.extend(live);
     let sums = b.fold(&tap, count, &vec![zero; moments + 1], &captures);
     // Of no nodes, everything is 0.
     let (one, least) = (b.f32(1.0), b.f32(1e-30));

@@ -227,6 +227,41 @@ fn bevelled_bricks_have_their_mean_and_nearly_their_variance() {
 }
 
 #[test]
+fn walls_with_live_joints_are_those_with_fixed_ones() {
+    for bond in BONDS {
+        for (mortar, bevel) in [(0.15, 0.0), (0.1, 0.3)] {
+            let inputs = |mortar: Value, bevel: Value| json!({ "bond": bond, "columns": 1, "rows": 2, "mortar": mortar, "bevel": bevel });
+            let fixed = graph("brick", &inputs(json!(mortar), json!(bevel)));
+            let live = json!({
+                "version": 1, "name": "live",
+                "inputs": { "a": { "type": "float", "value": mortar, "min": 0, "max": 1 }, "b": { "type": "float", "value": bevel, "min": 0, "max": 1 } },
+                "nodes": { "x": { "type": "brick", "inputs": inputs(json!({ "input": "a" }), json!({ "input": "b" })) } },
+                "outputs": { "out": { "node": "x" } }
+            })
+            .to_string();
+            for method in [Method::Local, Method::Quad] {
+                for turned in [false, true] {
+                    for size in SIZES {
+                        let footprints = footprints(0.7 * size, turned, 12);
+                        let wanted = evaluated(&fixed, method, &footprints);
+                        let found = evaluated(&live, method, &footprints);
+                        for (part, bound) in [(0, 2e-3), (1, 6e-3)] {
+                            for (found, wanted) in found[part].iter().zip(&wanted[part]) {
+                                let error = (found - wanted).abs();
+                                assert!(
+                                    error < bound,
+                                    "{bond} {mortar} {bevel} {method} {size} {turned} {part}: {found} {wanted}"
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn every_place_belongs_to_one_brick() {
     let places: Vec<Footprint> = (0..400)
         .map(|i| Footprint {

@@ -7,7 +7,7 @@
 
 use super::bits;
 use super::bond::{Bond, Brick, Rows};
-use super::harmonics::{Spectrum, names};
+use super::harmonics::{Factors, Spectrum, names};
 use super::pulse::{Axis, Pulse, SHORT_RAMP, Series};
 use super::separable::{Cell, Place, Wanted};
 use super::taps::{by_place, joined};
@@ -72,32 +72,102 @@ impl Cell for Wall {
         out
     }
 
-    fn spectrum(&self, parameters: &[Option<f32>]) -> Option<Spectrum> {
-        let parameters: Option<Vec<f64>> = (parameters.iter())
+    fn spectrum(&self, parameters: &[Option<f32>]) -> Option<Spectrum<'_>> {
+        let offset = f64::from(parameters[0]?);
+        let (middle, shear) = self.bond.symmetry(offset);
+        let middle = [0, 1].map(|axis| middle[axis] / f64::from(self.bond.cell()[axis]));
+        let known: Option<Vec<f64>> = (parameters.iter())
             .map(|known| known.map(f64::from))
             .collect();
-        let parameters = parameters?;
-        let (middle, shear) = self.bond.symmetry(parameters[0]);
-        let middle = [0, 1].map(|axis| middle[axis] / f64::from(self.bond.cell()[axis]));
-        let waves = |k, l| self.wave(&parameters, middle, [k, l]).map(|[even, _]| even);
-        Some(Spectrum::of(middle, shear, waves))
+        Some(match known {
+            Some(known) => Spectrum::known(middle, shear, |frequency| {
+                self.wave(&known, middle, frequency).map(|[even, _]| even)
+            }),
+            None => Spectrum::of_factors(middle, shear, self, |frequency| {
+                let sizes = self.sizes();
+                let mut sums = vec![0.0; sizes.len()];
+                for brick in self.bond.bricks() {
+                    let of = sizes.iter().position(|&size| size == brick.size);
+                    let turns = self.turns(&brick, offset, middle, frequency);
+                    sums[of.expect("a size of the bond")] += (TAU * turns).cos();
+                }
+                sums
+            }),
+        })
+    }
+}
+
+impl Factors for Wall {
+    fn products(&self) -> usize {
+        self.sizes().len()
+    }
+
+    fn along(
+        &self,
+        b: &mut Builder,
+        axis: usize,
+        frequency: Value,
+        parameters: &[Value],
+    ) -> Vec<[Value; 2]> {
+        let cell = self.bond.cell()[axis];
+        let [joint, ramp] = [1, 2].map(|i| parameters[2 * axis + i]);
+        (self.sizes().into_iter())
+            .map(|size| {
+                let size = b.f32(size[axis]);
+                let face = b.sub(size, joint);
+                let zero = b.f32(0.0);
+                let face = b.max(face, zero);
+                let outer = b.scale(face, 0.5);
+                let ramp = b.min(ramp, outer);
+                // As of `wave`.
+                [(1.0, 1.0), (4.0 / 3.0, 0.816_496_6)].map(|(lost, share)| {
+                    let lost = b.scale(ramp, lost);
+                    let width = b.sub(face, lost);
+                    let width = b.scale(width, 1.0 / cell);
+                    let ramp = b.scale(ramp, share / cell);
+                    let (turns, ramped) = (b.mul(frequency, width), b.mul(frequency, ramp));
+                    let (face, edge) = (live_sinc(b, turns), live_sinc(b, ramped));
+                    let face = b.mul(width, face);
+                    b.mul(face, edge)
+                })
+            })
+            .collect()
     }
 }
 
 impl Wall {
+    /// The sizes of bricks that differ.
+    fn sizes(&self) -> Vec<[f32; 2]> {
+        let mut sizes = Vec::new();
+        for brick in self.bond.bricks() {
+            if !sizes.contains(&brick.size) {
+                sizes.push(brick.size);
+            }
+        }
+        sizes
+    }
+
+    /// The phase of a wave at a brick, from a point.
+    fn turns(&self, brick: &Brick, offset: f64, from: [f64; 2], frequency: [f64; 2]) -> f64 {
+        let shift = if brick.shifted { offset } else { 0.0 };
+        let shift = [shift, 0.0];
+        let along = [0, 1].map(|axis| {
+            let centre = f64::from(brick.centre[axis]) + shift[axis];
+            let centre = centre / f64::from(self.bond.cell()[axis]);
+            frequency[axis] * (centre - from[axis])
+        });
+        along[0] + along[1]
+    }
+
     /// The integrals over the unit cell of the wall and of its square times cos and sin of 2π times the
     /// frequency times the distance from a point.
     fn wave(&self, parameters: &[f64], from: [f64; 2], frequency: [f64; 2]) -> [[f64; 2]; 2] {
         let mut sums = [[0.0; 2]; 2];
         for brick in self.bond.bricks() {
-            let shift = if brick.shifted { parameters[0] } else { 0.0 };
-            let shift = [shift, 0.0];
-            let mut turns = 0.0;
+            let turns = self.turns(&brick, parameters[0], from, frequency);
             let mut both = [1.0; 2];
             for axis in [0, 1] {
                 let cell = f64::from(self.bond.cell()[axis]);
-                let centre = (f64::from(brick.centre[axis]) + shift[axis]) / cell;
-                turns += frequency[axis] * (centre - from[axis]);
                 let (joint, ramp) = (parameters[1 + 2 * axis], parameters[2 + 2 * axis]);
                 let outer = 0.5 * (f64::from(brick.size[axis]) - joint).max(0.0);
                 let ramp = ramp.min(outer);
@@ -212,6 +282,22 @@ impl Wall {
         }
         builder.finish(module)
     }
+}
+
+/// sin πx/(πx) where the shader runs.
+fn live_sinc(b: &mut Builder, x: Value) -> Value {
+    // In turns, less whole ones.
+    let turns = b.scale(x, 0.5);
+    let raised = b.offset(turns, 0.5);
+    let whole = b.floor(raised);
+    let turns = b.sub(turns, whole);
+    let [_, sine] = b.circle(turns);
+    let angle = b.scale(x, std::f32::consts::PI);
+    let (magnitude, least, one) = (b.abs(angle), b.f32(1e-4), b.f32(1.0));
+    let still = b.lt(magnitude, least);
+    let angle = b.select(still, one, angle);
+    let ratio = b.div(sine, angle);
+    b.select(still, one, ratio)
 }
 
 /// sin πx/(πx).
