@@ -29,18 +29,22 @@ static SPEC: NodeSpec = NodeSpec {
             joint to 1 over the bevel; with the output `random`, out is a uniform random number of \
             [0, 1] for each brick and half of the joints around it. Joints and bevels are measured in rows and have the same \
             width in texture space in both directions.",
-        statistics: "A sum over the bricks of a unit cell of products of two periodic pulses, one a \
+        statistics: "A sum over the bricks within reach of products of two periodic pulses, one a \
             coordinate. Each pulse has its closed form (a sum over its edges up to \
             σ = 0.11 periods, six damped harmonics beyond). Up to a correlation of the coordinates of 1/2 the \
             mean of a product is four terms of Mehler's series; of a larger one a part that both \
-            share is integrated by the trapezoid rule, 19 nodes for 8:1 at 45 degrees. Without a bevel the variance is P(1 − P); with one, that of a pulse with the same mean \
-            square, approximate. Random numbers are weighted by the share of the footprint that \
-            each brick holds, and fade to their mean, 1/2, where the footprint covers many unit \
-            cells: from 0.5 cells of √det Σ, or 1.1 cells along a coordinate after the shared part. Of varying parameters the means are used.",
-        accuracy: "The mean is within 1e-5 for footprints along the axes and within 2e-3 for rotated \
-            ones up to 10:1; longer ones are blurred across to 10:1. Random numbers are within 1e-3 \
-            under round footprints and 0.065 under rotated ones of 8:1 until they fade, and then within \
-            0.06. With a bevel the standard \
+            share is integrated by the trapezoid rule, 19 nodes for 8:1 at 45 degrees. Where that takes longer, \
+            the wall is the sum of its waves that the footprint leaves, each damped by e^{−2π²kᵀΣk}, whatever the \
+            footprint's direction. Without a bevel the variance is P(1 − P); with one, from the mean of the \
+            square, whose ramps are exact for their edges and approximate in waves. Random numbers are \
+            weighted by the share of the footprint that each brick holds: a product of two shares near by, \
+            the density of a Gaussian at each part of a brick under long footprints. They fade to their mean, 1/2, \
+            where the footprint covers many unit cells: from 0.5 cells of √det Σ, or 1.1 cells along a coordinate \
+            after the shared part. Of varying parameters the means are used.",
+        accuracy: "The mean is within 1e-3 for footprints along the axes and within 2e-3 for rotated \
+            ones up to 10:1; longer ones are blurred across to 10:1 while they are narrow. Random numbers are \
+            within 1e-3 under round footprints and 0.01 under rotated ones of 8:1 until they fade, and then \
+            within 0.056. With a bevel the standard \
             deviation is within 0.03. Held by `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
             Mehler 1866. Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. Names of \

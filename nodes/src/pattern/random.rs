@@ -84,7 +84,7 @@ pub(crate) fn numbered(
     let area = b.sqrt(area);
     let kept = faded(b, area, AREA);
     let taps = Taps::of(b, spread.covariance);
-    let (parts, is_wide) = wide::parts(b, bond, spread.covariance, taps.count);
+    let (parts, is_wide) = wide::parts(b, bond, spread.covariance, &taps);
     let none = b.u32(0);
     let count = b.select(is_wide, none, taps.count);
     let mut captures = vec![place[0], place[1]];

@@ -213,8 +213,8 @@ fn random_bricks_are_filtered_until_they_fade() {
     for bond in ["running", "flemish", "herringbone", "spanish"] {
         let inputs =
             json!({ "bond": bond, "columns": 1, "rows": 2, "output": "random", "seed": 3 });
-        held("brick", &inputs, 0.3, [[1e-3; 2], [0.065, 0.02]]);
-        held("brick", &inputs, 1.0, [[0.04, 0.015], [0.06, 0.015]]);
+        held("brick", &inputs, 0.3, [[1e-3; 2], [0.012, 0.006]]);
+        held("brick", &inputs, 1.0, [[0.04, 0.015], [0.056, 0.015]]);
     }
 }
 

@@ -5,7 +5,8 @@
 //! made to sum to 1.
 
 use super::super::bond::Bond;
-use super::{BRICK, SUMS, random, row_hash};
+use super::super::taps::Taps;
+use super::{ALONE, BRICK, SUMS, faded, random, row_hash};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// Along each coordinate, given the other one, half of a part is at most one over this many standard
@@ -29,13 +30,17 @@ fn half(bond: Bond) -> [f32; 2] {
     [0, 1].map(|k| 0.5 * TILE[k] / bond.cell()[k])
 }
 
-/// Into how many parts tiles are taken apart along each coordinate, and whether that costs less than so many
-/// nodes.
+/// Standard deviations along a coordinate, in unit cells: above the first the sum fades, at the second it
+/// has faded, since no more copies are summed.
+const LONGEST: [f32; 2] = [1.8, 2.4];
+
+/// Into how many parts tiles are taken apart along each coordinate, and whether to sum them: where that
+/// costs less than the nodes, or where these fade.
 pub(super) fn parts(
     b: &mut Builder,
     bond: Bond,
     [xx, xy, yy]: [Value; 3],
-    nodes: Value,
+    taps: &Taps,
 ) -> ([Value; 2], Value) {
     let (both, cross) = (b.mul(xx, yy), b.square(xy));
     let area = b.sub(both, cross);
@@ -57,10 +62,15 @@ pub(super) fn parts(
     let (along, across) = (b.le(counts[0], most), b.le(counts[1], most));
     let few = b.and(along, across);
     let parts = b.mul(counts[0], counts[1]);
-    let nodes = b.float_u(nodes);
+    let nodes = b.float_u(taps.count);
     let nodes = b.scale(nodes, PARTS_A_NODE);
-    let cheaper = b.le(parts, nodes);
-    (counts, b.and(few, cheaper))
+    let mut better = b.le(parts, nodes);
+    let fading = b.f32(ALONE[0]);
+    for sd in taps.sd {
+        let fades = b.lt(fading, sd);
+        better = b.or(better, fades);
+    }
+    (counts, b.and(few, better))
 }
 
 /// A function of x, y, Σ, the parts, the cells, the seed, how much is kept, and the offset where that is
@@ -84,6 +94,7 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
         b.div(all, parts[k])
     });
     // Of a part, ⅓ of the square of half its size.
+    let mut kept = kept;
     let own = halves.map(|half| {
         let square = b.square(half);
         b.scale(square, 1.0 / 3.0)
@@ -96,6 +107,10 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
     let left = b.max(left, own[0]);
     let inverse_x = b.div(one, left);
     let [sd_x, sd_y] = [left, vy].map(|v| b.sqrt(v));
+    for sd in [sd_x, sd_y] {
+        let share = faded(b, sd, LONGEST);
+        kept = b.mul(kept, share);
+    }
     let mut captures = vec![place[0], place[1], parts[0], parts[1], halves[0], halves[1]];
     captures.extend([sd_x, sd_y, slope, inverse_x, inverse_y]);
     captures.extend([cells[0], cells[1], seed]);
