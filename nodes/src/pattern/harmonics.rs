@@ -4,7 +4,7 @@
 //! left lies within an ellipse of frequencies of the area π/(2√det Σ), and is summed row by row.
 
 use super::separable::Wanted;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
 use std::f64::consts::{PI, TAU};
 
 /// The largest kᵀΣk of a wave that is summed: of others 1.2e-3 is left, of amplitudes below 0.05.
@@ -28,8 +28,10 @@ pub(crate) struct Spectrum<'a> {
     middle: [f32; 2],
     shear: Shear,
     /// By frequency along x, from 0, and along y, from −[`HIGHEST`], in the coordinates of the shear: what
-    /// [`Amplitudes`] makes of it.
-    rows: Vec<f32>,
+    /// [`Amplitudes`] makes of it. Computed when a shader runs.
+    rows: Numbers,
+    /// Those of frequency 0.
+    still: Vec<f32>,
     amplitudes: Amplitudes<'a>,
 }
 
@@ -70,14 +72,9 @@ impl<'a> Spectrum<'a> {
     pub(crate) fn known(
         middle: [f64; 2],
         shear: Shear,
-        coefficients: impl Fn([f64; 2]) -> [f64; 2],
+        coefficients: impl Fn([f64; 2]) -> Vec<f64> + Send + Sync + 'static,
     ) -> Self {
-        Self {
-            middle: middle.map(|x| x as f32),
-            shear,
-            rows: rows(shear, coefficients),
-            amplitudes: Amplitudes::Known,
-        }
+        Self::of(middle, shear, Amplitudes::Known, coefficients)
     }
 
     /// From factors, and their coefficients at a frequency.
@@ -85,21 +82,33 @@ impl<'a> Spectrum<'a> {
         middle: [f64; 2],
         shear: Shear,
         factors: &'a dyn Factors,
-        coefficients: impl Fn([f64; 2]) -> Vec<f64>,
+        coefficients: impl Fn([f64; 2]) -> Vec<f64> + Send + Sync + 'static,
     ) -> Self {
+        Self::of(middle, shear, Amplitudes::Products(factors), coefficients)
+    }
+
+    fn of(
+        middle: [f64; 2],
+        shear: Shear,
+        amplitudes: Amplitudes<'a>,
+        coefficients: impl Fn([f64; 2]) -> Vec<f64> + Send + Sync + 'static,
+    ) -> Self {
+        let at = move |k: i32, l: i32| {
+            let frequency = [k, shear.lean * k + shear.tall * l].map(f64::from);
+            coefficients(frequency).into_iter().map(|x| x as f32)
+        };
+        let still: Vec<f32> = at(0, 0).collect();
+        let frequencies = (HIGHEST + 1) * (2 * HIGHEST + 1);
+        let rows = Numbers::lazy(frequencies as usize * still.len(), move || {
+            let all = (0..=HIGHEST).flat_map(|k| (-HIGHEST..=HIGHEST).map(move |l| (k, l)));
+            all.flat_map(|(k, l)| at(k, l)).collect()
+        });
         Self {
             middle: middle.map(|x| x as f32),
             shear,
-            rows: rows(shear, coefficients),
-            amplitudes: Amplitudes::Products(factors),
-        }
-    }
-
-    /// Numbers a frequency.
-    fn width(&self) -> usize {
-        match self.amplitudes {
-            Amplitudes::Known => 2,
-            Amplitudes::Products(factors) => factors.products(),
+            rows,
+            still,
+            amplitudes,
         }
     }
 
@@ -216,10 +225,7 @@ impl<'a> Spectrum<'a> {
         let state = vec![zero; names.len()];
         let sums = b.fold(&row, count, &state, &captures);
         let mut parts: Vec<Value> = sums.iter().map(|&sum| b.add(sum, sum)).collect();
-        let numbers: Vec<Value> = (self.rows[HIGHEST as usize * self.width()..].iter())
-            .take(self.width())
-            .map(|&x| b.f32(x))
-            .collect();
+        let numbers: Vec<Value> = self.still.iter().map(|&x| b.f32(x)).collect();
         let [still_x, still_y] = [0, 1].map(|axis| self.along(b, axis, zero, &parameters));
         let [mean, square] = self.amplitudes(b, &numbers, &still_x, &still_y);
         for (still, at) in [(mean, Some(0)), (square, of.squared.then_some(of.orders))] {
@@ -331,10 +337,10 @@ impl<'a> Spectrum<'a> {
         let row = b.scale(k, (2 * HIGHEST + 1) as f32);
         let entry = b.offset(l, HIGHEST as f32);
         let entry = b.add(row, entry);
-        let entry = b.scale(entry, self.width() as f32);
+        let entry = b.scale(entry, self.still.len() as f32);
         let entry = b.trunc_i(entry);
         let entry = b.cast_u(entry);
-        let numbers: Vec<Value> = (0..self.width() as u32)
+        let numbers: Vec<Value> = (0..self.still.len() as u32)
             .map(|i| {
                 let i = b.u32(i);
                 let at = b.add_u(entry, i);
@@ -391,21 +397,6 @@ impl<'a> Spectrum<'a> {
 fn sheared(b: &mut Builder, [x, y]: [Value; 2], [lean, tall]: [f32; 2]) -> Value {
     let (x, y) = (b.scale(x, lean), b.scale(y, tall));
     b.add(x, y)
-}
-
-/// Numbers by frequency.
-fn rows<T: IntoIterator<Item = f64>>(
-    shear: Shear,
-    coefficients: impl Fn([f64; 2]) -> T,
-) -> Vec<f32> {
-    let mut rows = Vec::new();
-    for k in 0..=HIGHEST {
-        for l in -HIGHEST..=HIGHEST {
-            let frequency = [k, shear.lean * k + shear.tall * l].map(f64::from);
-            rows.extend(coefficients(frequency).into_iter().map(|x| x as f32));
-        }
-    }
-    rows
 }
 
 /// Parameters: constants, and what is not known as parameters of a function.

@@ -19,6 +19,7 @@ const REACH: f32 = 4.0;
 
 /// A wall; its parameters are the running bond's offset, then joint and ramp along x and along y, in
 /// bricks and rows.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Wall {
     /// How its bricks are laid.
     pub(crate) bond: Bond,
@@ -79,16 +80,19 @@ impl Cell for Wall {
         let known: Option<Vec<f64>> = (parameters.iter())
             .map(|known| known.map(f64::from))
             .collect();
+        let wall = *self;
         Some(match known {
-            Some(known) => Spectrum::known(middle, shear, |frequency| {
-                self.wave(&known, middle, frequency).map(|[even, _]| even)
+            Some(known) => Spectrum::known(middle, shear, move |frequency| {
+                wall.wave(&known, middle, frequency)
+                    .map(|[even, _]| even)
+                    .to_vec()
             }),
-            None => Spectrum::of_factors(middle, shear, self, |frequency| {
-                let sizes = self.sizes();
+            None => Spectrum::of_factors(middle, shear, self, move |frequency| {
+                let sizes = wall.sizes();
                 let mut sums = vec![0.0; sizes.len()];
-                for brick in self.bond.bricks() {
+                for brick in wall.bond.bricks() {
                     let of = sizes.iter().position(|&size| size == brick.size);
-                    let turns = self.turns(&brick, offset, middle, frequency);
+                    let turns = wall.turns(&brick, offset, middle, frequency);
                     sums[of.expect("a size of the bond")] += (TAU * turns).cos();
                 }
                 sums
