@@ -211,7 +211,12 @@ impl Wall {
             let face = b.max(face, zero);
             let outer = b.scale(face, 0.5);
             let short = b.as_constant(ramp).is_some_and(|w| w / cell <= SHORT_RAMP);
-            let ramp = b.min(ramp, outer);
+            // No ramp stays one that is known, however small the face.
+            let ramp = if b.is_zero(ramp) {
+                ramp
+            } else {
+                b.min(ramp, outer)
+            };
             let lost = b.scale(ramp, 0.5);
             let half = b.sub(outer, lost);
             let [centre, half, bevel] = [centre[k], half, ramp].map(|v| b.scale(v, 1.0 / cell));
