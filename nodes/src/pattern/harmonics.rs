@@ -1,7 +1,7 @@
 //! Patterns that repeat along two coordinates as Fourier series.
 //!
 //! A Gaussian footprint damps a wave of the frequency k by e^{−2π²kᵀΣk}, whatever its direction: what is
-//! left lies within an ellipse of frequencies of the area π/(2√det Σ), and is summed row by row.
+//! left lies within an ellipse of frequencies, kᵀΣk ≤ s, of the area πs/√det Σ, and is summed row by row.
 
 use super::separable::Wanted;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
@@ -185,11 +185,9 @@ impl<'a> Spectrum<'a> {
         let area = b.sub(both, square);
         let least = b.f32(1e-20);
         let area = b.max(area, least);
-        // The ellipse reaches √(½ Σ⁻¹₁₁) along k, and √(½ Σ⁻¹₂₂) along l.
-        let inverse = {
-            let half = b.f32(FARTHEST);
-            b.div(half, area)
-        };
+        // The ellipse reaches √(s Σ⁻¹₁₁) along k, and √(s Σ⁻¹₂₂) along l.
+        let farthest = b.f32(FARTHEST);
+        let inverse = b.div(farthest, area);
         let [highest, other] = [vy, vx].map(|v| {
             let square = b.mul(v, inverse);
             b.sqrt(square)
@@ -197,7 +195,7 @@ impl<'a> Spectrum<'a> {
         let limit = b.f32((HIGHEST + 1) as f32);
         let (within, also) = (b.lt(highest, limit), b.lt(other, limit));
         let within = b.and(within, also);
-        // Half of the ellipse holds (π/2) · ½/√det Σ waves.
+        // Half of the ellipse holds (π/2) · s/√det Σ waves.
         let root = b.sqrt(area);
         let nodes = b.float_u(nodes);
         let waves = match self.amplitudes {
@@ -367,9 +365,7 @@ impl<'a> Spectrum<'a> {
         let share = b.clamp(share, 0.0, 1.0);
         let damping = b.mul(damping, share);
         let turns = b.dot(&[k, l], &place);
-        let raised = b.offset(turns, 0.5);
-        let whole = b.floor(raised);
-        let turns = b.sub(turns, whole);
+        let turns = nearest(b, turns);
         let [cosine, sine] = b.circle(turns).map(|part| b.mul(damping, part));
         let value = b.mul(amplitude, cosine);
         let mut parts = vec![value];
@@ -399,8 +395,15 @@ fn sheared(b: &mut Builder, [x, y]: [Value; 2], [lean, tall]: [f32; 2]) -> Value
     b.add(x, y)
 }
 
+/// Turns less their whole part, in [−½, ½].
+pub(super) fn nearest(b: &mut Builder, turns: Value) -> Value {
+    let raised = b.offset(turns, 0.5);
+    let whole = b.floor(raised);
+    b.sub(turns, whole)
+}
+
 /// Parameters: constants, and what is not known as parameters of a function.
-fn declared(b: &mut Builder, known: &[Option<f32>]) -> Vec<Value> {
+pub(super) fn declared(b: &mut Builder, known: &[Option<f32>]) -> Vec<Value> {
     (known.iter().enumerate())
         .map(|(i, known)| match known {
             Some(x) => b.f32(*x),
@@ -410,7 +413,7 @@ fn declared(b: &mut Builder, known: &[Option<f32>]) -> Vec<Value> {
 }
 
 /// Those of the values that are not known.
-fn unknown(values: &[Value], known: &[Option<f32>]) -> Vec<Value> {
+pub(super) fn unknown(values: &[Value], known: &[Option<f32>]) -> Vec<Value> {
     (values.iter().zip(known))
         .filter(|(_, known)| known.is_none())
         .map(|(&value, _)| value)

@@ -203,6 +203,15 @@ fn point_function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> Functi
     b.finish(module)
 }
 
+/// The first whole number within `reach` of a place, and how many there are, at most [`MOST`].
+fn within(b: &mut Builder, place: Value, reach: Value) -> [Value; 2] {
+    let (low, high) = (b.sub(place, reach), b.add(place, reach));
+    let (below, last) = (b.floor(low), b.floor(high));
+    let first = b.offset(below, 1.0);
+    let count = b.sub(last, below);
+    [first, b.clamp(count, 0.0, MOST)]
+}
+
 /// 1 below the first number, 0 above the second.
 fn faded(b: &mut Builder, x: Value, [from, to]: [f32; 2]) -> Value {
     let top = b.f32(to);

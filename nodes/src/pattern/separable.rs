@@ -4,7 +4,7 @@
 //! wall ([`super::wall`]). What the coordinates share is integrated ([`super::taps`]); the rest is
 //! averaged in closed form.
 
-use super::harmonics::Spectrum;
+use super::harmonics::{Spectrum, declared, unknown};
 use super::pulse::{Axis, Moments, Pulse, Series};
 use super::taps::{Taps, by_place, joined};
 use crate::noise::field::{Field, Spread};
@@ -74,7 +74,8 @@ pub(crate) trait Cell {
         of: Wanted,
     ) -> Vec<Value>;
 
-    /// Its Fourier series, where that is shorter for wide footprints and the parameters are known.
+    /// Its Fourier series, if it has one that is shorter for wide footprints, from the parameters that are
+    /// known.
     fn spectrum(&self, parameters: &[Option<f32>]) -> Option<Spectrum<'_>> {
         let _ = parameters;
         None
@@ -217,10 +218,7 @@ pub(crate) fn filtered(
     });
     let b = lower.b();
     let (zero, none) = (b.f32(0.0), b.u32(0));
-    let live: Vec<Value> = (pattern.parameters.iter().zip(&constants))
-        .filter(|(_, constant)| constant.is_none())
-        .map(|(&value, _)| value)
-        .collect();
+    let live = unknown(&pattern.parameters, &constants);
     let mut count = taps.count;
     let mut wide = vec![zero; moments];
     if let Some(function) = by_waves {
@@ -383,13 +381,7 @@ fn tap(
         .collect();
     let place = [b.param_f32("x"), b.param_f32("y")];
     let captures = Taps::NAMES.map(|name| b.param_f32(name));
-    let mut parameters = Vec::new();
-    for (i, constant) in constants.iter().enumerate() {
-        parameters.push(match constant {
-            Some(x) => b.f32(*x),
-            None => b.param_f32(format!("parameter_{i}")),
-        });
-    }
+    let parameters = declared(&mut b, constants);
     let (axes, weight) = Taps::node(&mut b, index, place, captures);
     let [.., correlation] = captures;
     let place = Place { axes, correlation };

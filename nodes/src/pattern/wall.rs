@@ -7,7 +7,7 @@
 
 use super::bits;
 use super::bond::{Bond, Brick, Rows};
-use super::harmonics::{Factors, Spectrum, names};
+use super::harmonics::{Factors, Spectrum, names, nearest, unknown};
 use super::pulse::{Axis, Pulse, SHORT_RAMP, Series};
 use super::separable::{Cell, Place, Wanted};
 use super::taps::{by_place, joined};
@@ -63,11 +63,7 @@ impl Cell for Wall {
         state.resize(1 + of.orders + usize::from(of.squared), zero);
         let [x, y] = place.axes;
         let mut captures = vec![x.mean, y.mean, x.sd, y.sd, place.correlation];
-        captures.extend(
-            (parameters.iter().zip(&known))
-                .filter(|(_, known)| known.is_none())
-                .map(|(&v, _)| v),
-        );
+        captures.extend(unknown(parameters, &known));
         let mut out = b.fold(&body, count, &state, &captures).split_off(1);
         by_place(b, &mut out[..of.orders], place.axes.map(|axis| axis.sd));
         out
@@ -297,9 +293,7 @@ impl Wall {
 fn live_sinc(b: &mut Builder, x: Value) -> Value {
     // In turns, less whole ones.
     let turns = b.scale(x, 0.5);
-    let raised = b.offset(turns, 0.5);
-    let whole = b.floor(raised);
-    let turns = b.sub(turns, whole);
+    let turns = nearest(b, turns);
     let [_, sine] = b.circle(turns);
     let angle = b.scale(x, std::f32::consts::PI);
     let (magnitude, least, one) = (b.abs(angle), b.f32(1e-4), b.f32(1.0));

@@ -6,7 +6,7 @@ use super::super::bits;
 use super::super::bond::{Bond, Rows};
 use super::super::pulse::Axis;
 use super::super::taps::{Taps, by_place, joined};
-use super::{ALONE, BRICK, MOST, SUMS, faded, in_cells, offset_parameter, random, row_hash};
+use super::{ALONE, BRICK, SUMS, faded, in_cells, offset_parameter, random, row_hash, within};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Normal;
 
@@ -29,11 +29,7 @@ fn share(b: &mut Builder, low: Value, high: Value, inverse: Value) -> [Value; 4]
 fn window(b: &mut Builder, from: Value, half: Value, sd: Value) -> [Value; 2] {
     let reach = b.scale(sd, REACH);
     let reach = b.add(reach, half);
-    let (low, high) = (b.sub(from, reach), b.add(from, reach));
-    let (below, last) = (b.floor(low), b.floor(high));
-    let start = b.offset(below, 1.0);
-    let count = b.sub(last, below);
-    [start, b.clamp(count, 0.0, MOST)]
+    within(b, from, reach)
 }
 
 /// Names of the sums over a row: of w(r − ½) and its derivatives, of w(r − ½)² and its first, and of

@@ -6,7 +6,7 @@
 
 use super::super::bond::Bond;
 use super::super::taps::Taps;
-use super::{ALONE, BRICK, SUMS, faded, random, row_hash};
+use super::{ALONE, BRICK, SUMS, faded, random, row_hash, within};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// Along each coordinate, given the other one, half of a part is at most one over this many standard
@@ -85,7 +85,7 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
     let parts = ["parts_x", "parts_y"].map(|name| b.param_f32(name));
     let cells = ["cell_x", "cell_y"].map(|name| b.param(name, Type::I32));
     let seed = b.param("seed", Type::U32);
-    let kept = b.param_f32("kept");
+    let mut kept = b.param_f32("kept");
     let offset = super::offset_parameter(b, fixed);
     let one = b.f32(1.0);
     let half = half(bond);
@@ -94,7 +94,6 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
         b.div(all, parts[k])
     });
     // Of a part, ⅓ of the square of half its size.
-    let mut kept = kept;
     let own = halves.map(|half| {
         let square = b.square(half);
         b.scale(square, 1.0 / 3.0)
@@ -249,6 +248,8 @@ fn part(module: &mut Module) -> FunctionRef {
     });
     let reach = b.scale(sd_y, REACH);
     let [start, rows] = within(b, from[1], reach);
+    let rows = b.trunc_i(rows);
+    let rows = b.cast_u(rows);
     let captures = [
         from[0], from[1], start, sd_x, slope, inverse[0], inverse[1], cells[0], cells[1], which,
         seed,
@@ -258,17 +259,6 @@ fn part(module: &mut Module) -> FunctionRef {
         b.result(name, sum);
     }
     builder.finish(module)
-}
-
-/// The first whole number within `reach` of a place, and how many there are.
-fn within(b: &mut Builder, place: Value, reach: Value) -> [Value; 2] {
-    let (low, high) = (b.sub(place, reach), b.add(place, reach));
-    let (below, last) = (b.floor(low), b.floor(high));
-    let first = b.offset(below, 1.0);
-    let count = b.sub(last, below);
-    let count = b.clamp(count, 0.0, super::MOST);
-    let count = b.trunc_i(count);
-    [first, b.cast_u(count)]
 }
 
 /// One more row of copies, the body of a fold.
@@ -301,6 +291,8 @@ fn row(module: &mut Module) -> FunctionRef {
     let lean = b.mul(slope, up);
     let middle = b.sub(from[0], lean);
     let [first, count] = within(b, middle, reach);
+    let count = b.trunc_i(count);
+    let count = b.cast_u(count);
     let captures = [
         middle, first, used, scaled, slope, inverse[0], inverse[1], cells[0], hash,
     ];

@@ -1,6 +1,7 @@
 //! All figures of a tiling at once: the Fourier series of the lattice, damped by the footprint.
 
 use super::rows::Size;
+use crate::pattern::harmonics::nearest;
 use crate::pattern::region::NAMES;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use std::f64::consts::{PI, TAU};
@@ -143,13 +144,6 @@ pub(super) fn kept_row(b: &mut Builder, sd: Value) -> Value {
     let size = b.clamp(size, 0.0, (KEPT - 1) as f32);
     let size = b.trunc_i(size);
     b.cast_u(size)
-}
-
-/// Turns less their whole part, in [−½, ½].
-fn nearest(b: &mut Builder, turns: Value) -> Value {
-    let raised = b.offset(turns, 0.5);
-    let whole = b.floor(raised);
-    b.sub(turns, whole)
 }
 
 /// An amplitude of figures whose edges all are diagonals, by the half diagonal h:
