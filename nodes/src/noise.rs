@@ -20,3 +20,25 @@ pub(crate) mod spectral;
 pub(crate) mod volume;
 mod window;
 pub(crate) mod worley;
+
+room! {
+    byexample,
+    cellnoise2d,
+    cellnoise3d,
+    fractal2d,
+    fractal3d,
+    gabornoise2d,
+    multifractal2d,
+    noise2d,
+    noise3d,
+    phasornoise2d,
+    randomcolor,
+    randomfloat,
+    ridged2d,
+    spectralnoise2d,
+    turbulence2d,
+    unifiednoise2d,
+    valuenoise2d,
+    whitenoise2d,
+    worleynoise2d,
+}

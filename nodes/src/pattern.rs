@@ -19,3 +19,28 @@ pub(crate) mod tiling;
 pub(crate) mod touch;
 pub(crate) mod triangle;
 pub(crate) mod wall;
+
+room! {
+    brick,
+    checkerboard,
+    circle,
+    cloverleaf,
+    crosshatch,
+    gradientangular,
+    gradientradial,
+    grid,
+    hexagon,
+    image,
+    line,
+    ramp4,
+    ramplr,
+    ramptb,
+    shape,
+    splitlr,
+    splittb,
+    stripes,
+    tiledcircles,
+    tiledcloverleafs,
+    tiledhexagons,
+    wave,
+}

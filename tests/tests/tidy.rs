@@ -136,13 +136,14 @@ fn codegen_names_no_node() {
 }
 
 #[test]
-fn a_node_stands_in_the_file_of_its_name() {
+fn a_node_stands_in_the_room_of_its_category_in_the_file_of_its_name() {
     for def in mipless::catalogue() {
         let name = def.spec.name;
-        let text = read(&root().join(format!("nodes/src/{name}.rs")));
+        let room = def.spec.category.name().to_lowercase();
+        let text = read(&root().join(format!("nodes/src/{room}/{name}.rs")));
         assert!(
             text.contains(&format!("name: \"{name}\"")),
-            "{name}.rs holds another node"
+            "{room}/{name}.rs holds another node"
         );
         let example = format!("\"type\": \"{name}\"");
         assert!(

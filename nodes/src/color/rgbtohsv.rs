@@ -1,0 +1,82 @@
+//! Hue, saturation, value.
+
+use crate::color::hsv::to_hsv_function;
+use crate::componentwise::{composed, exposed};
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "rgbtohsv",
+    aliases: &["rgb_to_hsv", "separate_hsv"],
+    category: Category::Color,
+    summary: "The hue, saturation and value of a colour.",
+    doc: Doc {
+        computes: "With M and m the largest and least channel: value M, saturation (M − m)/M, and the \
+            hue in turns: (g − b)/(M − m)/6 where red is largest, ⅓ and ⅔ further where green and \
+            blue are; from 0 up to 1; 0 for a grey.",
+        statistics: "By a cubature of degree 5 over the joint Gaussian of the three channels, thirteen \
+            evaluations with positive weights: the mean, the slope by each channel, and the rest \
+            as a sum of squares. Approximate: the hue jumps from 1 to 0 at red and is free at \
+            grey, where it is off by a large part of a turn; a colour that is averaged in \
+            `hsvadjust` or `hsvtorgb` is not. The value is a maximum by Clark’s moments.",
+        accuracy: "For a colour whose channels lie at least four standard deviations apart, away from \
+            red, the means and standard deviations are within 0.005; where their order changes \
+            within the footprint, the value within 0.005, the saturation within 0.06 and the hue \
+            within 0.25. Held by `nodes/src/tests/color.rs` against dense numerical integration \
+            in f64.",
+        references: "Smith 1978, *Color Gamut Transform Pairs* (the hexcone). Stroud 1971, *Approximate \
+            Calculation of Multiple Integrals*, U_n 5. Clark 1961, *The Greatest of a Finite Set \
+            of Random Variables*, eqs. 2–6. MaterialX 1.39 specification, node `rgbtohsv`.",
+    },
+    inputs: &[PortSpec::new(
+        "in",
+        PortType::Exactly(Type::Color3),
+        Default::Float(0.0),
+        "The colour, linear Rec. 709.",
+    )],
+    output: OutputType::Exactly(Type::Color3),
+    class: |inputs| {
+        if inputs.varies("in") {
+            Behaviour::Rough {
+                error: 0.11,
+                place: "has a hue that is off by up to a quarter of a turn near grey and at red",
+            }
+        } else {
+            Behaviour::Function
+        }
+    },
+    example: r#"{
+  "version": 1,
+  "name": "rgbtohsv_example",
+  "nodes": {
+    "noise": {"type": "noise2d", "inputs": {"frequency": 5, "amplitude": 0.2, "pivot": 0.8}},
+    "other": {"type": "noise2d", "inputs": {"frequency": 4, "amplitude": 0.2, "pivot": 0.45, "seed": 3}},
+    "color": {"type": "combine3", "inputs": {"in1": {"node": "noise"}, "in2": 0.15, "in3": {"node": "other"}}},
+    "rgbtohsv": {"type": "rgbtohsv", "inputs": {"in": {"node": "color"}}}
+  },
+  "outputs": { "out": { "node": "rgbtohsv" } }
+}"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let color = exposed(lower, node, "in");
+    let function = lower.function("rgb_to_hsv", to_hsv_function);
+    composed(lower, |lower| {
+        let ranges = [[0.0, 1.0], UNBOUNDED];
+        let mut out = (lower.algebra).cubature(&color, &ranges, |b, rgb| {
+            let mut hsv = b.call(&function, rgb);
+            hsv.truncate(2);
+            hsv
+        });
+        let largest = lower.algebra.maximum(&color[0], &color[1]);
+        out.push(lower.algebra.maximum(&largest, &color[2]));
+        out
+    })
+}
+
+const UNBOUNDED: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];

@@ -1,0 +1,13 @@
+//! Maps of coordinates.
+
+room! {
+    kaleidoscope,
+    mirror,
+    place2d,
+    polar,
+    repeat,
+    rotate2d,
+    rotate3d,
+    swirl,
+    warp,
+}

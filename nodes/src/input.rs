@@ -1,0 +1,7 @@
+//! Where a graph begins.
+
+room! {
+    constant,
+    position,
+    texcoord,
+}

@@ -1,0 +1,49 @@
+//! `fractal2d`: a sum of octaves of lattice noise.
+
+use crate::noise::kernel::Kernel;
+use crate::noise::noise2d::deviation;
+use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
+use crate::noise::source::{
+    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of,
+};
+use mipless_codegen::NodeDef;
+use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "fractal2d",
+    aliases: &["fbm", "fractal", "fractal noise", "musgrave", "clouds"],
+    category: Category::Noise,
+    summary: "A sum of octaves of lattice noise; octaves that the footprint removes cost nearly nothing.",
+    doc: Doc {
+        computes: "pivot + amplitude/4 · Σ_k diminishᵏ N_k(lacunarityᵏ · frequency · texcoord), \
+            with N_k independent noises of `noise2d`, k from 0 up to `octaves`. Of 3.25 octaves the \
+            fourth has a quarter of its amplitude.",
+        statistics: "Gaussian with mean `pivot` and variance (amplitude/4)² Σ_k diminish²ᵏ; the \
+            range is ±5 standard deviations in practice. The spectrum is the sum of the octaves’, each \
+            that of `noise2d`, finer by lacunarityᵏ. Each \
+            octave is filtered as `noise2d` is; octaves are independent, so gradients and Hessians \
+            add and so do the remainders.",
+        accuracy: "As `noise2d`, octave by octave; held by `nodes/tests/noise.rs`, `nodes/tests/perlin.rs` \
+            and, for mean and variance, `tests/tests/statistics.rs`.",
+        references: "Perlin 1985; Musgrave et al. 1989; Bruneton & Neyret 2012 §2.2.",
+    },
+    inputs: &[
+        TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
+    ],
+    output: OutputType::Exactly(Type::Float),
+    class: |inputs| repeating(inputs, deviation(inputs)),
+    example: r#"{ "version": 1, "name": "smoke",
+        "nodes": { "fractal2d": { "type": "fractal2d", "inputs": { "frequency": 4, "octaves": 5, "pivot": 0.5 } } },
+        "outputs": { "out": { "node": "fractal2d" } } }"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef {
+    spec: &SPEC,
+    lower: |lower, node| {
+        let octaves = tiled_octaves(lower, node);
+        let kernel = Kernel::of(lower, node);
+        let extent = EXTENT * octaves.sd();
+        octaves_of(lower, node, (kernel, octaves), (0.25, extent))
+    },
+};

@@ -1,0 +1,103 @@
+//! `whitenoise2d`: a random number at every point.
+
+use crate::noise::cell::{VARIANCE, lattice_seed, number, split};
+use crate::noise::cellnoise2d::PERIOD;
+use crate::noise::field::{Field, Spread};
+use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
+use mipless_codegen::ir::Value;
+use mipless_codegen::moments::Normal;
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "whitenoise2d",
+    aliases: &["white noise", "noise_white", "whitenoise", "static"],
+    category: Category::Noise,
+    summary: "A random number of [0, 1) at every point, down to a grain.",
+    doc: Doc {
+        computes: "out = the random number of the grain ⌊frequency · texcoord⌋, uniform in [0, 1) and \
+            independent of the other grains'.",
+        statistics: "Uniform: mean ½, variance 1/12, range [0, 1); not Gaussian (max |CDF − Φ| is \
+            0.058). The spectrum is flat up to `frequency`. Over a footprint that holds the share K of \
+            the point's own grain the mean is ½ + K(x − ½), and the variance is K(1 − K)(x − ½)² + \
+            (1 − K)/12, all of it remainder: the other grains count with their ensemble. That a pixel \
+            of many grains averages them is not in the mean.",
+        accuracy: "A footprint of 0 gives the grain; from half a grain on the mean is ½ and the variance \
+            1/12 less what the average over the footprint keeps, 1/(48πσ²) at σ grains. Held by \
+            `nodes/tests/sources.rs`.",
+        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 \
+            (Gaussian footprints). For grains that are seen use `cellnoise2d`.",
+    },
+    inputs: &[
+        TEXCOORD,
+        PortSpec {
+            default: Default::Float(1024.0),
+            doc: "How many grains fit a unit of the texture space.",
+            range: Range::soft(16.0, 65536.0),
+            unit: "grains per uv",
+            ..FREQUENCY
+        },
+        SEED,
+        PortSpec {
+            doc: "After how many grains the noise repeats in both directions; 0 for never.",
+            unit: "grains",
+            ..PERIOD
+        },
+    ],
+    output: OutputType::Exactly(Type::Float),
+    class: |_| Behaviour::Random { deviation: 0.058 },
+    example: r#"{ "version": 1, "name": "grain",
+        "nodes": { "whitenoise2d": { "type": "whitenoise2d", "inputs": { "frequency": 300 } } },
+        "outputs": { "out": { "node": "whitenoise2d" } } }"#,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let position = position(lower, node);
+    let (seed, period) = (lower.integer(node, "seed"), lower.integer(node, "period"));
+    let mode = lower.mode();
+    let spread = Spread::of(lower.b(), &position);
+    let size = lower.b().sqrt(spread.eigenvalues[0]);
+    lower.source_footprint(size);
+    let b = lower.b();
+    let seed = lattice_seed(b, seed, 0x3c6e_f372);
+    let [column, x] = split(b, &position[0]);
+    let [row, y] = split(b, &position[1]);
+    let (value, _) = number(b, column, row, seed, period);
+    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let mut field = Field {
+        mean: value,
+        gradient: [zero; 2],
+        hessian: [zero; 3],
+        rest: zero,
+    };
+    if mode.filters() {
+        let mut share = one;
+        for (fraction, variance) in [(x, spread.covariance[0]), (y, spread.covariance[2])] {
+            let raised = b.offset(variance, 1e-12);
+            let sd = b.sqrt(raised);
+            let inverse = b.div(one, sd);
+            let low = b.neg(fraction);
+            let high = b.sub(one, fraction);
+            let edges: [Value; 2] = [low, high].map(|d| Normal::at(b, d, inverse).below);
+            let inside = b.sub(edges[1], edges[0]);
+            share = b.mul(share, inside);
+        }
+        let share = b.clamp(share, 0.0, 1.0);
+        let off = b.offset(value, -0.5);
+        let mean = b.mul(share, off);
+        field.mean = b.offset(mean, 0.5);
+        if mode.spreads() {
+            let others = b.sub(one, share);
+            let square = b.square(off);
+            let own = b.mul(square, share);
+            let own = b.offset(own, VARIANCE);
+            field.rest = b.mul(own, others);
+        }
+    }
+    vec![field.at(lower, &position).with_range([0.0, 1.0])]
+}

@@ -1,0 +1,90 @@
+//! Two halves along v.
+
+use crate::componentwise::{binary, transfer};
+use crate::pattern::ramplr::between;
+use mipless_codegen::moments::Piecewise;
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
+    Type,
+};
+
+static SPEC: NodeSpec = NodeSpec {
+    name: "splittb",
+    aliases: &[],
+    category: Category::Pattern,
+    summary: "One value on one side and another on the other, along v.",
+    doc: Doc {
+        computes: "out = valueb where v ≥ center, else valuet, with (u, v) = texcoord. As in MaterialX, the \
+            top is where v is 0.",
+        statistics: "A step of a Gaussian, Φ in closed form, variance P(1 − P): exact between constants. \
+            Between varying values, a product, as `mix`.",
+        accuracy: "Within 1e-6 of the difference of the values. Held by `nodes/src/pattern/tests.rs`.",
+        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. Bussgang \
+            1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*. MaterialX \
+            1.39 specification, node `splittb`.",
+    },
+    inputs: &[
+        PortSpec::new(
+            "valuet",
+            PortType::Any,
+            Default::Float(0.0),
+            "The value at the top.",
+        ),
+        PortSpec::new(
+            "valueb",
+            PortType::Any,
+            Default::Float(0.0),
+            "The value at the bottom.",
+        ),
+        PortSpec::new(
+            "center",
+            PortType::Exactly(Type::Float),
+            Default::Float(0.5),
+            "Where one value meets the other.",
+        )
+        .unit("uv"),
+        PortSpec::new(
+            "texcoord",
+            PortType::Exactly(Type::Vector2),
+            Default::Surface,
+            "The coordinates.",
+        )
+        .unit("uv"),
+    ],
+    output: OutputType::Widest,
+    class,
+    example: r##"{
+  "version": 1,
+  "name": "splittb_example",
+  "nodes": {
+    "splittb": { "type": "splittb", "inputs": { "valuet": "#20303c", "valueb": "#e8c27a" } }
+  },
+  "outputs": { "out": { "node": "splittb" } }
+}"##,
+};
+
+/// The definition.
+pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
+
+/// A function of position alone, unless a parameter varies.
+fn class(inputs: &dyn InputView) -> Behaviour {
+    if ["valuet", "valueb", "center"]
+        .into_iter()
+        .any(|port| inputs.varies(port))
+    {
+        Behaviour::Function
+    } else {
+        Behaviour::Pattern
+    }
+}
+
+fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+    let texcoord = lower.bundle(node, "texcoord");
+    let centre = lower.number(node, "center");
+    let step = Piecewise::step(lower.b(), centre);
+    let share = transfer(lower, &texcoord[1], &step);
+    binary(lower, node, ["valuet", "valueb"], |lower, from, to| {
+        between(lower, from, to, &share)
+    })
+}

@@ -1,0 +1,35 @@
+//! Functions of one signal, and of what shapes them.
+
+pub(crate) mod arc;
+
+room! {
+    absval,
+    acos,
+    asin,
+    atan,
+    bias,
+    ceil,
+    clamp,
+    contrast,
+    cos,
+    exp,
+    floor,
+    fract,
+    gain,
+    invert,
+    levels,
+    ln,
+    modulo,
+    power,
+    quantize,
+    range,
+    round,
+    sign,
+    sin,
+    smoothstep,
+    sqrt,
+    squarewave,
+    step,
+    tan,
+    trianglewave,
+}
