@@ -1,5 +1,6 @@
 //! What the noises share: hashing, the lattice kernel, and the field that a filtered source gives.
 
+pub(crate) mod affine;
 pub(crate) mod bend;
 pub(crate) mod cell;
 pub(crate) mod field;
@@ -17,6 +18,8 @@ mod remainder;
 pub(crate) mod ridge;
 pub(crate) mod source;
 pub(crate) mod spectral;
+pub(crate) mod sum;
+mod tile;
 pub(crate) mod volume;
 mod window;
 pub(crate) mod worley;

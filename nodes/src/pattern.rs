@@ -5,6 +5,7 @@ mod bits;
 pub(crate) mod bond;
 pub(crate) mod figure;
 pub(crate) mod harmonics;
+pub(crate) mod measure;
 pub(crate) mod pulse;
 pub(crate) mod random;
 pub(crate) mod region;
@@ -19,6 +20,7 @@ pub(crate) mod tiling;
 pub(crate) mod touch;
 pub(crate) mod triangle;
 pub(crate) mod wall;
+pub(crate) mod wanted;
 
 room! {
     brick,

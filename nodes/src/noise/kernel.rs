@@ -1,9 +1,10 @@
 //! The choice of a kernel at each lattice point.
 
+use super::affine::Affine;
 use super::field::Spread;
-use super::lattice::{self, Octaves};
+use super::lattice::{self, WAVELENGTH};
 use super::perlin::{self, Kind};
-use super::source::Affine;
+use super::sum::Octaves;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Lower, NodeRule};
 use mipless_graph::Node;
@@ -89,7 +90,7 @@ impl Kernel {
             return;
         }
         let wavelength = match self {
-            Self::Gaussian => lattice::WAVELENGTH,
+            Self::Gaussian => WAVELENGTH,
             Self::Quintic(kind) => kind.wavelength(),
         };
         let b = lower.b();

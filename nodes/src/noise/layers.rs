@@ -1,9 +1,10 @@
 //! The octaves of a noise as signals of their own, for what is not linear in each of them.
 
+use super::affine::Affine;
 use super::kernel::Kernel;
-use super::lattice::Octaves;
 use super::octaves::tiled_octaves;
-use super::source::{Affine, EXTENT};
+use super::source::EXTENT;
+use super::sum::Octaves;
 use mipless_codegen::Lower;
 use mipless_codegen::moments::Signal;
 use mipless_graph::Node;

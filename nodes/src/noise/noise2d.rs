@@ -1,10 +1,10 @@
 //! `noise2d`: lattice noise, filtered exactly for any footprint.
 
 use crate::noise::kernel::Kernel;
-use crate::noise::lattice::Octaves;
 use crate::noise::source::{
     AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, tiling,
 };
+use crate::noise::sum::Octaves;
 use mipless_codegen::NodeDef;
 use mipless_graph::{Category, Doc, InputView, NodeSpec, OutputType, Type};
 

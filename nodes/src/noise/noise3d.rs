@@ -1,9 +1,9 @@
 //! `noise3d`: lattice noise in space, filtered exactly for any footprint.
 
-use crate::noise::lattice::Octaves;
 use crate::noise::source::{
     AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, scaled, tiling,
 };
+use crate::noise::sum::Octaves;
 use crate::noise::volume::{self, Kind};
 use mipless_codegen::NodeDef;
 use mipless_graph::{Category, Doc, InputView, NodeSpec, OutputType, Type};

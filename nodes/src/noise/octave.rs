@@ -1,8 +1,8 @@
 //! The part of an octave's state that goes from octave to octave.
 
 use super::hash::NEXT_OCTAVE;
-use super::lattice::Octaves;
-use super::lattice::address::wrapped_cell;
+use super::sum::Octaves;
+use super::tile::wrapped_cell;
 use mipless_codegen::ir::{Builder, Type, Value};
 use mipless_codegen::moments::Signal;
 

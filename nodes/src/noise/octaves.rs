@@ -1,7 +1,7 @@
 //! The ports of noises that are made of octaves.
 
-use super::lattice::Octaves;
 use super::source::tiling;
+use super::sum::Octaves;
 use mipless_codegen::Lower;
 use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
 

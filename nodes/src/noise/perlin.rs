@@ -21,9 +21,9 @@ mod window;
 
 use super::field::{Field, Spread};
 use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
-use super::lattice::{Octaves, parts};
 use super::octave::Octave;
 use super::remainder::{remainder, share};
+use super::sum::{Octaves, parts};
 use super::window::{count, start};
 use energy::{Footprint, energies};
 use fit::{Fit, Shape};

@@ -1,10 +1,10 @@
 //! The ports that noises share, and what they do to the field.
 
+use super::affine::Affine;
 use super::field::Field;
 use super::kernel::Kernel;
-use super::lattice::Octaves;
+use super::sum::Octaves;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::moments::Signal;
 use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
 
@@ -128,25 +128,6 @@ fn scaled_by_frequency(lower: &mut Lower<'_>, node: &Node, port: &str) -> Vec<Si
 
 /// No noise leaves this many standard deviations in practice (once in 10⁶ points of a Gaussian).
 pub(crate) const EXTENT: f32 = 5.0;
-
-/// What is added to a noise and what multiplies it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Affine {
-    /// The factor.
-    pub(crate) amplitude: Value,
-    /// The term.
-    pub(crate) pivot: Value,
-}
-
-impl Affine {
-    /// The noise itself.
-    pub(crate) fn unit(b: &mut Builder) -> Self {
-        Self {
-            amplitude: b.f32(1.0),
-            pivot: b.f32(0.0),
-        }
-    }
-}
 
 /// A sum of octaves of a lattice as the node's output: pivot + amplitude · `factor` · X, with |X| at
 /// most `extent`.

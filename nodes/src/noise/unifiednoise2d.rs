@@ -1,11 +1,12 @@
 //! `unifiednoise2d`: one node for the noises that are used most.
 
 use crate::componentwise::{product, sum, transfer};
+use crate::noise::affine::Affine;
 use crate::noise::cell;
 use crate::noise::kernel::Kernel;
-use crate::noise::lattice::Octaves;
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
-use crate::noise::source::{Affine, EXTENT, SEED, TEXCOORD};
+use crate::noise::source::{EXTENT, SEED, TEXCOORD};
+use crate::noise::sum::Octaves;
 use crate::noise::worley::{self, Output, Worley};
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};

@@ -1,8 +1,8 @@
 //! `valuenoise2d`: random values at lattice points, blended between them.
 
 use crate::noise::kernel::Kernel;
-use crate::noise::lattice::Octaves;
 use crate::noise::perlin::Kind;
+use crate::noise::sum::Octaves;
 
 use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, tiling};
 use mipless_codegen::NodeDef;

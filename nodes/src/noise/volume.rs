@@ -15,8 +15,8 @@ mod quadrupole;
 mod quintic;
 mod spread;
 
-use super::lattice::Octaves;
 use super::perlin::fit::SPACE;
+use super::sum::Octaves;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Value};
 use mipless_codegen::moments::{Mode, Signal};

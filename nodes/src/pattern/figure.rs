@@ -1,6 +1,7 @@
 //! One figure around a centre: 1 inside, 0 outside.
 
-use super::region::{Measure, Outline, Whitening, disc};
+use super::measure::Measure;
+use super::region::{Outline, Whitening, disc};
 use super::separable::{finished_signal, rest_of_two};
 use super::soft::{self, Edge};
 use super::touch::Touch;

@@ -3,7 +3,7 @@
 //! A Gaussian footprint damps a wave of the frequency k by e^{−2π²kᵀΣk}, whatever its direction: what is
 //! left lies within an ellipse of frequencies, kᵀΣk ≤ s, of the area πs/√det Σ, and is summed row by row.
 
-use super::separable::Wanted;
+use super::wanted::{Wanted, names};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
 use std::f64::consts::{PI, TAU};
 
@@ -418,12 +418,4 @@ pub(super) fn unknown(values: &[Value], known: &[Option<f32>]) -> Vec<Value> {
         .filter(|(_, known)| known.is_none())
         .map(|(&value, _)| value)
         .collect()
-}
-
-/// Names of the moments.
-pub(crate) fn names(of: Wanted) -> Vec<&'static str> {
-    let all = ["mean", "dx", "dy", "dxx", "dxy", "dyy"];
-    let mut names = all[..of.orders].to_vec();
-    names.extend(of.squared.then_some("square"));
-    names
 }

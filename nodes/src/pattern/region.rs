@@ -7,17 +7,12 @@
 //! within 2e-6; else V(h, q) = (Φ(h) − ½)(Φ(q) − ½) − V(q, h). So any covariance is exact. A disc is
 //! integrated along the minor axis of the footprint, chord by chord.
 
+use super::measure::{Measure, NAMES};
 use super::touch::Touch;
 use crate::noise::field::Spread;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Normal;
-
-/// A measure and its derivatives by the mean: the value, ∂x, ∂y, ∂xx, ∂xy, ∂yy.
-pub(crate) type Measure = [Value; 6];
-
-/// Names of the state of a fold over a measure.
-pub(crate) const NAMES: [&str; 6] = ["measure", "dx", "dy", "dxx", "dxy", "dyy"];
 
 /// No footprint is narrower than this, in units of the position.
 const NARROWEST: f32 = 1e-6;

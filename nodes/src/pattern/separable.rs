@@ -7,6 +7,7 @@
 use super::harmonics::{Spectrum, declared, unknown};
 use super::pulse::{Axis, Moments, Pulse, Series};
 use super::taps::{Taps, by_place, joined};
+use super::wanted::Wanted;
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
@@ -89,15 +90,6 @@ pub(crate) struct Place {
     pub(crate) axes: [Axis; 2],
     /// Their correlation, of at most ½.
     pub(crate) correlation: Value,
-}
-
-/// Which moments are asked for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Wanted {
-    /// The mean and so many derivatives: 1, 3 or 6.
-    pub(crate) orders: usize,
-    /// Whether the mean of the square is.
-    pub(crate) squared: bool,
 }
 
 /// A constant and terms whose sum is a function on the unit cell, from parameters.

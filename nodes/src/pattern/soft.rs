@@ -5,7 +5,8 @@
 //! ramp alone is left, which is exact; a footprint that is wide against the ramp has E[R] = E[S], and
 //! the measure alone is left, which is exact as well.
 
-use super::region::{Measure, Outline};
+use super::measure::Measure;
+use super::region::Outline;
 use super::separable::rest;
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::Lower;

@@ -19,7 +19,8 @@ pub(crate) use lattice::Lattice;
 pub(crate) use tile::Tile;
 
 use super::figure::sharp;
-use super::region::{Measure, NAMES, Whitening};
+use super::measure::{Measure, NAMES};
+use super::region::Whitening;
 use super::separable::{finished_signal, phase};
 use crate::noise::field::Spread;
 use mipless_codegen::Lower;

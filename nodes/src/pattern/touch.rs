@@ -1,7 +1,7 @@
 //! Whether a footprint reaches the edge of a figure. Where it does not, the figure's measure is 0 or 1,
 //! and nothing needs to be summed.
 
-use super::region::Measure;
+use super::measure::Measure;
 use mipless_codegen::ir::{Builder, Value};
 
 /// How far a footprint reaches, in standard deviations: what lies beyond is 3e-7 of it.

@@ -7,10 +7,11 @@
 
 use super::bits;
 use super::bond::{Bond, Brick, Rows};
-use super::harmonics::{Factors, Spectrum, names, nearest, unknown};
+use super::harmonics::{Factors, Spectrum, nearest, unknown};
 use super::pulse::{Axis, Pulse, SHORT_RAMP, Series};
-use super::separable::{Cell, Place, Wanted};
+use super::separable::{Cell, Place};
 use super::taps::{by_place, joined};
+use super::wanted::{Wanted, names};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use std::f64::consts::{PI, TAU};
 

@@ -2,30 +2,9 @@
 //! the lattice tiles.
 
 use crate::noise::hash::{key, steps, walked};
+use crate::noise::octave::Octave;
+use crate::noise::tile::wrapped;
 use mipless_codegen::ir::{Builder, Type, Value};
-
-/// `x`, integers up to a few periods away from 0, wrapped to [0, period).
-pub(in crate::noise) fn wrapped(b: &mut Builder, x: Value, period: Value) -> Value {
-    // In the middle between two integers the quotient's rounding does not matter.
-    let middle = b.offset(x, 0.5);
-    let turns = b.div(middle, period);
-    let turns = b.floor(turns);
-    let whole = b.mul(turns, period);
-    b.sub(x, whole)
-}
-
-/// The cell (an i32) wrapped to [0, period), as a real.
-pub(in crate::noise) fn wrapped_cell(b: &mut Builder, cell: Value, period: Value) -> Value {
-    // The quotient of a far cell is off by some turns; the rest is then small and exact.
-    let far = b.float_i(cell);
-    let turns = b.div(far, period);
-    let turns = b.trunc_i(turns);
-    let whole = b.trunc_i(period);
-    let whole = b.mul_i(turns, whole);
-    let rest = b.sub_i(cell, whole);
-    let rest = b.float_i(rest);
-    wrapped(b, rest, period)
-}
 
 /// The lattice around a position, seen along rows.
 #[derive(Clone, Copy, Debug)]
@@ -144,5 +123,11 @@ impl Address {
                 keys
             }
         }
+    }
+}
+
+impl Octave<2> {
+    pub(super) fn address(&self, b: &mut Builder) -> Address {
+        Address::new(b, self.cells, self.seed, self.period)
     }
 }

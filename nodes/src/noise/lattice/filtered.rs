@@ -2,8 +2,9 @@
 
 use super::energy::Energy;
 use super::row::{Frame, orders, row};
-use super::{MOST_ROWS, Octaves, WIDTH};
+use super::width::WIDTH;
 use crate::noise::octave::Octave;
+use crate::noise::sum::{Octaves, derivatives};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 
@@ -26,14 +27,8 @@ const MINOR_SHARE: f32 = 0.1;
 /// Rows are summed up to this many times √T₂₂ from the position.
 const REACH: f32 = 2.3;
 
-/// How many derivatives of the noise a mode needs.
-pub(in crate::noise) fn derivatives(mode: Mode) -> usize {
-    match mode {
-        Mode::Point | Mode::Naive | Mode::Ensemble => 0,
-        Mode::Local => 1,
-        Mode::Quad => 2,
-    }
-}
+/// The most lattice rows that are summed; footprints that need more fade.
+const MOST_ROWS: f32 = 32.0;
 
 /// 0 below `low`, 1 above `high`, linear between.
 fn ramp(b: &mut Builder, x: Value, [low, high]: [f32; 2]) -> Value {

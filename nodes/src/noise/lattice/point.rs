@@ -1,9 +1,10 @@
 //! One octave of the unfiltered noise: the nearest 3×3 kernels.
 
 use super::address::Address;
-use super::{Octaves, WIDTH};
+use super::width::WIDTH;
 use crate::noise::hash::direction;
 use crate::noise::octave::Octave;
+use crate::noise::sum::Octaves;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// The offsets of a position to the three nearest columns, and where they start.

@@ -1,8 +1,8 @@
 //! From the columns and rows around a position to the hashes of their lattice points.
 
 use crate::noise::hash::{COLUMN_FACTOR, ROW_FACTOR, corner};
-use crate::noise::lattice::address::wrapped;
 use crate::noise::octave::Octave;
+use crate::noise::tile::wrapped;
 use mipless_codegen::ir::{Builder, Type, Value};
 
 const FACTORS: [u32; 2] = [COLUMN_FACTOR, ROW_FACTOR];

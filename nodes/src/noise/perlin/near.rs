@@ -3,7 +3,7 @@
 use super::grid::Grid;
 use super::profile::{DERIVATIVES, joint, quintic};
 use super::{Kind, NAMES};
-use crate::noise::lattice::parts;
+use crate::noise::sum::parts;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;
 

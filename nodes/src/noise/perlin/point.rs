@@ -2,8 +2,8 @@
 
 use super::Kind;
 use super::grid::Grid;
-use crate::noise::lattice::Octaves;
 use crate::noise::octave::Octave;
+use crate::noise::sum::Octaves;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 
 /// The fade of Perlin 2002, 6t⁵ − 15t⁴ + 10t³.

@@ -5,7 +5,7 @@ use super::fit::{Shape, Weight};
 use super::grid::Grid;
 use super::{Kind, NAMES};
 use crate::noise::hash::corner;
-use crate::noise::lattice::{derivatives, parts};
+use crate::noise::sum::{derivatives, parts};
 use crate::noise::window::{count, start};
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use mipless_codegen::moments::Mode;

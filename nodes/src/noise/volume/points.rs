@@ -1,8 +1,8 @@
 //! From steps along the axes to the keys of lattice points in space, wrapped where the lattice
 //! tiles.
 
-use crate::noise::lattice::address::wrapped;
 use crate::noise::octave::Octave;
+use crate::noise::tile::wrapped;
 use mipless_codegen::ir::{Builder, Type, Value};
 
 /// What a step along x, y and z adds to the key of a lattice point.

@@ -2,7 +2,8 @@
 //! the columns.
 
 use super::{REACH, Tiling};
-use crate::pattern::region::{Measure, NAMES, Outline, Whitening, disc_function};
+use crate::pattern::measure::{Measure, NAMES};
+use crate::pattern::region::{Outline, Whitening, disc_function};
 use crate::pattern::touch::Touch;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 

@@ -2,7 +2,7 @@
 
 use super::rows::Size;
 use crate::pattern::harmonics::nearest;
-use crate::pattern::region::NAMES;
+use crate::pattern::measure::NAMES;
 use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
 use std::f64::consts::{PI, TAU};
 
