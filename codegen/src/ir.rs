@@ -34,16 +34,17 @@ mod op;
 mod prune;
 #[cfg(test)]
 pub(crate) mod random;
+mod shared;
 mod table;
 mod text;
 mod verify;
 
-pub use build::{Builder, FunctionRef};
-pub use function::{Body, Function, Label, Parameter};
-pub use library::SharedFunction;
+pub use build::Builder;
+pub use function::{Body, Function, FunctionRef, Label, Parameter};
 pub(crate) use library::{Library, Shelves};
 pub(crate) use op::for_each_op;
 pub use op::{Op, OpInfo};
+pub use shared::SharedFunction;
 pub use table::{Numbers, Table};
 pub use text::ParseError;
 pub use verify::{Violation, verify};

@@ -7,12 +7,15 @@
 mod ahead;
 mod arguments;
 mod entry;
+mod finish;
+mod function;
 mod fusion;
 mod input;
 mod map;
 mod method;
 mod order;
 mod pair;
+mod place;
 mod rule;
 mod sampling;
 mod shape;

@@ -39,14 +39,15 @@ mod apart;
 mod entry;
 mod expression;
 mod function;
+mod gap;
 mod name;
 mod part;
 mod reserved;
 mod spelled;
 mod statement;
 
+pub(crate) use gap::Spelled;
 pub use name::identifier;
-pub(crate) use spelled::Spelled;
 
 use crate::ir::{FunctionId, Inst, Numbers, Program, Type};
 use entry::{Names, entry_text, face, push_entry_point, push_structs};

@@ -6,15 +6,19 @@
 
 mod adapter;
 mod error;
+mod limit;
 mod pace;
 mod pipeline;
 mod render;
+mod report;
 
-pub use adapter::{AdapterChoice, AdapterReport};
+pub use adapter::AdapterChoice;
 pub use error::GpuError;
+pub use limit::LARGEST_PROGRAM;
 pub use pace::Pace;
-pub use pipeline::{LARGEST_PROGRAM, Pipeline};
+pub use pipeline::Pipeline;
 pub use render::Timing;
+pub use report::AdapterReport;
 
 use std::sync::{Arc, Mutex};
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use mipless_codegen::ir::Interface;
 use mipless_graph::Type;
 
-use crate::view::Size;
+use crate::size::Size;
 
 /// Named channels of equal size, each stored along the rows from the top left. `T` is f32, or f64
 /// for a run of the oracle.

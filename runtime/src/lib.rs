@@ -23,5 +23,6 @@ pub mod image_file;
 pub mod job;
 pub mod metrics;
 pub mod plan;
+mod size;
 pub mod srgb;
 pub mod view;

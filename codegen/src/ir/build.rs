@@ -12,22 +12,12 @@
 
 use super::prune::without_dead_code;
 use super::{
-    Body, Constant, Function, FunctionId, Inst, Label, Library, Module, Numbers, Op, Parameter,
-    Table, Type, Value, op::fold_constants,
+    Body, Constant, Function, FunctionId, FunctionRef, Inst, Label, Library, Module, Numbers, Op,
+    Parameter, Table, Type, Value, op::fold_constants,
 };
 use hashbrown::{HashTable, hash_table::Entry};
 use rustc_hash::FxBuildHasher;
 use std::hash::BuildHasher;
-use std::sync::Arc;
-
-/// A finished function of a module, as a callee.
-#[derive(Clone, Debug)]
-pub struct FunctionRef {
-    /// Which.
-    pub id: FunctionId,
-    /// The types of its results.
-    pub results: Arc<[Type]>,
-}
 
 /// A definition in the table of those that are known: with its hash, which tells most others apart
 /// without a look at them.

@@ -193,3 +193,12 @@ impl Body {
         callees
     }
 }
+
+/// A finished function of a module, as a callee.
+#[derive(Clone, Debug)]
+pub struct FunctionRef {
+    /// Which.
+    pub id: FunctionId,
+    /// The types of its results.
+    pub results: Arc<[Type]>,
+}

@@ -11,7 +11,7 @@
 //! of a library are those that its module called, in the order of their first calls.
 
 use super::function::Kept;
-use super::{Builder, Constant, Function, FunctionId, FunctionRef, Module, Type, Value};
+use super::{Constant, Function, FunctionId, FunctionRef, Module, Type};
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHasher};
 use smallvec::SmallVec;
@@ -22,29 +22,20 @@ use std::rc::Rc;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
 /// Set in the id of a function of the library, until [`Library::link`] gives it its place.
-const SHARED: u32 = 1 << 31;
+pub(super) const SHARED: u32 = 1 << 31;
 
 /// What an argument is to a shared function: the constants that simplify what is built are part of
 /// the function, all other values are its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Argument(u8);
+pub(super) struct Argument(pub(super) u8);
 
 impl Argument {
-    const ZERO: Self = Self(4);
-    const ONE: Self = Self(5);
-    const MINUS_ONE: Self = Self(6);
-
-    fn of(b: &Builder, value: Value) -> Self {
-        match b.as_constant(value) {
-            Some(0.0) => Self::ZERO,
-            Some(1.0) => Self::ONE,
-            Some(-1.0) => Self::MINUS_ONE,
-            _ => Self(b.ty(value) as u8),
-        }
-    }
+    pub(super) const ZERO: Self = Self(4);
+    pub(super) const ONE: Self = Self(5);
+    pub(super) const MINUS_ONE: Self = Self(6);
 
     /// The type of a parameter; `None` for what stays a constant.
-    fn passed(self) -> Option<Type> {
+    pub(super) fn passed(self) -> Option<Type> {
         [Type::F32, Type::I32, Type::U32, Type::Bool]
             .get(usize::from(self.0))
             .copied()
@@ -53,16 +44,22 @@ impl Argument {
 
 /// What tells shared functions apart.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Key {
-    name: Cow<'static, str>,
-    variant: u32,
-    literals: SmallVec<[u32; 6]>,
-    arguments: Vec<Argument>,
+pub(super) struct Key {
+    pub(super) name: Cow<'static, str>,
+    pub(super) variant: u32,
+    pub(super) literals: SmallVec<[u32; 6]>,
+    pub(super) arguments: Vec<Argument>,
 }
 
 impl Key {
     /// Whether it is the key of these parts.
-    fn is(&self, name: &str, variant: u32, literals: &[u32], arguments: &[Argument]) -> bool {
+    pub(super) fn is(
+        &self,
+        name: &str,
+        variant: u32,
+        literals: &[u32],
+        arguments: &[Argument],
+    ) -> bool {
         self.variant == variant
             && self.arguments == arguments
             && self.name == name
@@ -70,7 +67,12 @@ impl Key {
     }
 
     /// A hash of the parts of a key.
-    fn hash_of(name: &str, variant: u32, literals: &[u32], arguments: &[Argument]) -> u64 {
+    pub(super) fn hash_of(
+        name: &str,
+        variant: u32,
+        literals: &[u32],
+        arguments: &[Argument],
+    ) -> u64 {
         let mut hasher = FxHasher::default();
         hasher.write(name.as_bytes());
         hasher.write_u32(variant);
@@ -95,7 +97,7 @@ impl Hash for Key {
 
 /// Where a result of a shared function is found.
 #[derive(Clone, Copy, Debug)]
-enum Outcome {
+pub(super) enum Outcome {
     Constant(Constant),
     Argument(u32),
     Result(u32),
@@ -103,15 +105,15 @@ enum Outcome {
 
 /// A finished shared function.
 #[derive(Debug)]
-struct Rule {
-    key: Key,
+pub(super) struct Rule {
+    pub(super) key: Key,
     /// The function, whose callees are [`SHARED`] and an index of `callees`; none where every
     /// result is a constant or an argument.
     function: Option<Function>,
     /// The types of the function's results.
     types: Arc<[Type]>,
     callees: Vec<Arc<Rule>>,
-    outcomes: Vec<Outcome>,
+    pub(super) outcomes: Vec<Outcome>,
 }
 
 /// The most rules that a process keeps: each is some kilobytes.
@@ -121,7 +123,7 @@ const MOST: usize = 4096;
 static KNOWN: LazyLock<RwLock<FxHashMap<Key, Arc<Rule>>>> = LazyLock::new(RwLock::default);
 
 /// The rule of this key, from those that are ready or by `build`.
-fn rule(key: Key, build: impl FnOnce(Key) -> Rule) -> Arc<Rule> {
+pub(super) fn rule(key: Key, build: impl FnOnce(Key) -> Rule) -> Arc<Rule> {
     // A panic while the lock is held leaves whole rules behind.
     let known = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
     if let Some(rule) = known.get(&key) {
@@ -138,22 +140,22 @@ fn rule(key: Key, build: impl FnOnce(Key) -> Rule) -> Arc<Rule> {
 
 /// The shared functions of a module under construction.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Library(Rc<RefCell<Shelves>>);
+pub(crate) struct Library(pub(super) Rc<RefCell<Shelves>>);
 
 /// What a library holds.
 #[derive(Debug, Default)]
 pub(crate) struct Shelves {
-    known: HashTable<Placed>,
+    pub(super) known: HashTable<Placed>,
     /// The functions that were called, callees first.
-    rules: Vec<Arc<Rule>>,
+    pub(super) rules: Vec<Arc<Rule>>,
 }
 
 /// A rule, and its function as one of the module.
 #[derive(Clone, Debug)]
-struct Placed {
-    hash: u64,
-    rule: Arc<Rule>,
-    function: Option<FunctionRef>,
+pub(super) struct Placed {
+    pub(super) hash: u64,
+    pub(super) rule: Arc<Rule>,
+    pub(super) function: Option<FunctionRef>,
 }
 
 impl Shelves {
@@ -166,7 +168,7 @@ impl Shelves {
     }
 
     /// The rule's function as one of this module.
-    fn reference(&mut self, rule: &Arc<Rule>) -> Option<FunctionRef> {
+    pub(super) fn reference(&mut self, rule: &Arc<Rule>) -> Option<FunctionRef> {
         if let Some(placed) = self.find(&rule.key) {
             return placed.function.clone();
         }
@@ -191,153 +193,8 @@ impl Shelves {
     }
 }
 
-/// A shared function's name and documentation.
-#[derive(Clone, Copy, Debug)]
-pub struct SharedFunction {
-    /// A readable name (an identifier in lower snake case), unique among rules.
-    pub name: &'static str,
-    /// Tells apart what `build` makes of the same arguments.
-    pub variant: u32,
-    /// One sentence that says what it computes.
-    pub doc: &'static str,
-}
-
-impl Builder {
-    /// What `build` makes of `arguments`, as a call of a function that all functions of the module
-    /// share; built in place where there is no library. `build` must depend on nothing but the
-    /// builder, the arguments, and `of`.
-    ///
-    /// Arguments that are the constants 0, 1 or −1 stay constants inside.
-    pub fn shared<const RESULTS: usize>(
-        &mut self,
-        of: SharedFunction,
-        arguments: &[(&'static str, Value)],
-        build: impl FnOnce(&mut Self, &[Value]) -> [(&'static str, Value); RESULTS],
-    ) -> [Value; RESULTS] {
-        if self.library.is_none() {
-            let values: SmallVec<[Value; 32]> = arguments.iter().map(|&(_, v)| v).collect();
-            return build(self, &values).map(|(_, v)| v);
-        }
-        let key = (Cow::Borrowed(of.name), of.variant, &[][..]);
-        let mut results =
-            self.call_rule(key, (of.name, of.doc), arguments, |b, v| build(b, v).into());
-        let mut results = results.drain(..);
-        [(); RESULTS].map(|()| results.next().expect("one for each result"))
-    }
-
-    /// The same for as many results as there are; `key` names all that `build` depends on but the
-    /// arguments.
-    pub(crate) fn call_rule(
-        &mut self,
-        (name, variant, literals): (Cow<'static, str>, u32, &[u32]),
-        (readable, doc): (&'static str, &'static str),
-        arguments: &[(&'static str, Value)],
-        build: impl FnOnce(&mut Self, &[Value]) -> Vec<(&'static str, Value)>,
-    ) -> SmallVec<[Value; 16]> {
-        let pattern: SmallVec<[Argument; 128]> = (arguments.iter())
-            .map(|&(_, value)| Argument::of(self, value))
-            .collect();
-        let hash = Key::hash_of(&name, variant, literals, &pattern);
-        let library = self
-            .library
-            .as_ref()
-            .expect("the caller has seen a library");
-        let is_it = |placed: &Placed| {
-            placed.hash == hash && placed.rule.key.is(&name, variant, literals, &pattern)
-        };
-        let known = library.0.borrow().known.find(hash, is_it).cloned();
-        let Placed { rule, function, .. } = known.unwrap_or_else(|| {
-            let key = Key {
-                name,
-                variant,
-                literals: literals.into(),
-                arguments: pattern.to_vec(),
-            };
-            let rule = rule(key, |key| Rule::new(key, (readable, doc), arguments, build));
-            let function = library.0.borrow_mut().reference(&rule);
-            Placed {
-                hash,
-                rule,
-                function,
-            }
-        });
-        let results = match &function {
-            Some(function) => {
-                let mut inputs = Vec::with_capacity(arguments.len());
-                for (&(_, value), argument) in arguments.iter().zip(&rule.key.arguments) {
-                    if argument.passed().is_some() {
-                        inputs.push(value);
-                    }
-                }
-                self.call_with(function, inputs.into_boxed_slice())
-            }
-            None => Vec::new(),
-        };
-        (rule.outcomes.iter())
-            .map(|outcome| match *outcome {
-                Outcome::Constant(constant) => self.constant(constant.ty, constant.bits),
-                Outcome::Argument(i) => arguments[i as usize].1,
-                Outcome::Result(i) => results[i as usize],
-            })
-            .collect()
-    }
-}
-
 impl Rule {
-    fn new(
-        key: Key,
-        (name, doc): (&'static str, &'static str),
-        arguments: &[(&'static str, Value)],
-        build: impl FnOnce(&mut Builder, &[Value]) -> Vec<(&'static str, Value)>,
-    ) -> Self {
-        let library = Library::default();
-        let mut b = Builder::new(name, doc).with_library(library.clone());
-        let mut places: FxHashMap<Value, u32> = FxHashMap::default();
-        let parameters: SmallVec<[Value; 32]> = (0u32..)
-            .zip(arguments.iter().zip(&key.arguments))
-            .map(|(i, (&(name, _), &argument))| match argument {
-                Argument::ZERO => b.f32(0.0),
-                Argument::ONE => b.f32(1.0),
-                Argument::MINUS_ONE => b.f32(-1.0),
-                passed => {
-                    let ty = passed.passed().expect("what is no constant is passed");
-                    // Arguments without names of their own are told apart by their places.
-                    let namesakes = arguments.iter().filter(|a| a.0 == name).count();
-                    let parameter = if namesakes == 1 {
-                        b.param(name, ty)
-                    } else {
-                        b.param(format!("{name}{i}"), ty)
-                    };
-                    places.insert(parameter, i);
-                    parameter
-                }
-            })
-            .collect();
-        let results = build(&mut b, &parameters);
-        let mut count = 0;
-        let outcomes = results
-            .iter()
-            .map(|&(name, value)| {
-                if let Some(constant) = b.constant_of(value) {
-                    Outcome::Constant(constant)
-                } else if let Some(&place) = places.get(&value) {
-                    Outcome::Argument(place)
-                } else {
-                    b.result(name, value);
-                    count += 1;
-                    Outcome::Result(count - 1)
-                }
-            })
-            .collect();
-        let function = (count > 0).then(|| b.finished());
-        let callees = &library.0.borrow().rules;
-        Self::of(key, function, outcomes, |id| {
-            assert!(id.0 & SHARED != 0, "a library calls itself alone");
-            Arc::clone(&callees[(id.0 & !SHARED) as usize])
-        })
-    }
-
-    fn of(
+    pub(super) fn of(
         key: Key,
         mut function: Option<Function>,
         outcomes: Vec<Outcome>,
@@ -451,54 +308,5 @@ impl Library {
             });
             module.functions.push(function);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ir::{Inst, Op};
-
-    const PRODUCT: SharedFunction = SharedFunction {
-        name: "weighted",
-        variant: 0,
-        doc: "A test.",
-    };
-
-    fn weighted(b: &mut Builder, x: Value, y: Value) -> [Value; 3] {
-        b.shared(PRODUCT, &[("x", x), ("y", y)], |b, v| {
-            let product = b.mul(v[0], v[1]);
-            [("product", product), ("zero", b.f32(0.0)), ("x", v[0])]
-        })
-    }
-
-    #[test]
-    fn rules_become_functions_and_constants_stay_visible() {
-        let library = Library::default();
-        let mut b = Builder::new("f", "A test.");
-        b.library = Some(library.clone());
-        let (x, y) = (b.param_f32("x"), b.param_f32("y"));
-        let [xy, zero, same] = weighted(&mut b, x, y);
-        assert!(b.is_zero(zero));
-        assert_eq!(same, x);
-        let [yx, ..] = weighted(&mut b, y, x);
-        let one = b.f32(1.0);
-        let [plain, ..] = weighted(&mut b, y, one);
-        assert_eq!(plain, y, "a factor of 1 needs no call");
-        let sum = b.sub(xy, yx);
-        b.result("sum", sum);
-        let mut module = Module::default();
-        b.finish(&mut module);
-        library.link(&mut module);
-        assert_eq!(module.functions.len(), 2, "two calls of one function");
-        assert_eq!(crate::ir::verify(&module), Ok(()));
-        // Inlined, the two products are one and the same.
-        let inlined = module.inlined(true);
-        assert_eq!(inlined.functions.len(), 1);
-        let difference = inlined.entry().inst(inlined.entry().results[0].1);
-        let Inst::Op(Op::Sub, [left, right, _]) = difference else {
-            panic!("{difference:?}")
-        };
-        assert_eq!(left, right);
     }
 }

@@ -3,7 +3,8 @@
 //!
 //! What comes of it is put together as if one had been lowered after the other, to the byte.
 
-use super::{Compiler, entry};
+use super::Compiler;
+use super::function::graph_function;
 use crate::ir::{FunctionId, FunctionRef, Module, Shelves};
 use crate::moments::Mode;
 use rustc_hash::FxHashMap;
@@ -43,7 +44,7 @@ pub(super) fn both<T>(
     let lower = || {
         let compiler = Compiler::new((graph, facts), catalogue, options);
         let mut module = Module::default();
-        let (function, _) = entry::graph_function(&compiler, &mut module, mode, name);
+        let (function, _) = graph_function(&compiler, &mut module, mode, name);
         Ahead {
             module,
             function,

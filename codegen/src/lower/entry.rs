@@ -1,14 +1,11 @@
 //! Entries: each method is a way to make an entry from functions of the graph.
 
-use super::symbols::reads_position;
-use super::{Arguments, Compiler, Lower, Method, ahead, sampling};
-use crate::ir::{Builder, FOOTPRINT, FunctionRef, Module, Type as Scalar, Value};
+use super::finish::finish;
+use super::function::{footprint_function, graph_function};
+use super::place::{finite, places};
+use super::{Arguments, Compiler, Method, ahead, sampling};
+use crate::ir::{Builder, FunctionRef, Module, Value};
 use crate::moments::{Branch, Mode};
-use mipless_graph::Graph;
-use std::ops::Range;
-
-/// The largest change of texture coordinates per pixel that is told apart from an infinite one.
-const LARGEST_FOOTPRINT: f32 = 1e9;
 
 /// Adds the entry of the compiled method to the module, as its last function.
 pub(super) fn build(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
@@ -31,55 +28,6 @@ pub(super) fn build(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
     }
 }
 
-/// A function of the graph in one mode; whether anything in it is not linear.
-pub(super) fn graph_function(
-    compiler: &Compiler<'_>,
-    module: &mut Module,
-    mode: Mode,
-    name: &str,
-) -> (FunctionRef, bool) {
-    let doc = match mode {
-        Mode::Point => "The texture at a point.",
-        Mode::Naive => "The texture of the filtered sources.",
-        Mode::Ensemble => "The filtered texture, by one variance per source.",
-        Mode::Local => "The filtered texture, by means, gradients and remainders.",
-        Mode::Quad => "The filtered texture, by means, gradients, Hessians and remainders.",
-    };
-    // A node makes about so many, most of them short-lived constants and products with 0 and 1.
-    let room = 24 * compiler.facts.order.len();
-    let b = Builder::new(name, doc).with_capacity(room);
-    let mut lower = Lower::new(compiler, module, b, mode);
-    lower.run();
-    let results = lower.results();
-    let nonlinear = lower.nonlinear;
-    let mut b = lower.algebra.b;
-    for (name, value) in results {
-        b.result(name, value);
-    }
-    (b.finish(module), nonlinear)
-}
-
-/// A function of the graph that gives the largest and the smallest footprint of its sources that
-/// matter, in wavelengths: `None` without sources.
-pub(super) fn footprint_function(
-    compiler: &Compiler<'_>,
-    module: &mut Module,
-    name: &str,
-    reduce: impl Fn(&mut Builder, &[Value]) -> Value,
-) -> Option<FunctionRef> {
-    let doc = "What the footprint is to the sources, in their wavelengths.";
-    let mut lower = Lower::new(compiler, module, Builder::new(name, doc), Mode::Local);
-    lower.run_sources();
-    let footprints = std::mem::take(&mut lower.footprints);
-    let mut b = lower.algebra.b;
-    if footprints.is_empty() {
-        return None;
-    }
-    let reduced = reduce(&mut b, &footprints);
-    b.result("result", reduced);
-    Some(b.finish(module))
-}
-
 /// The entry that passes a footprint made finite on to one function.
 fn entry_over(
     compiler: &Compiler<'_>,
@@ -99,100 +47,6 @@ fn entry_over(
     }
     let results = b.call(&function, &arguments);
     finish(module, b, &function, &results);
-}
-
-/// The magnitude from which on a result has lost its meaning: what squares it overflows.
-const LARGEST_RESULT: f32 = 1e38;
-
-/// A result, or 0 where it overflows: parameters may be as extreme as footprints.
-pub(super) fn guarded(b: &mut Builder, value: Value) -> Value {
-    if b.ty(value) != Scalar::F32 || b.as_constant(value).is_some() {
-        return value;
-    }
-    let (limit, zero) = (b.f32(LARGEST_RESULT), b.f32(0.0));
-    let magnitude = b.abs(value);
-    let within = b.lt(magnitude, limit);
-    b.select(within, value, zero)
-}
-
-pub(super) fn finish(module: &mut Module, mut b: Builder, like: &FunctionRef, results: &[Value]) {
-    let names: Vec<String> = module
-        .function(like.id)
-        .results
-        .iter()
-        .map(|(name, _)| name.clone())
-        .collect();
-    for (name, &value) in names.into_iter().zip(results) {
-        let value = guarded(&mut b, value);
-        b.result(name, value);
-    }
-    b.finish(module);
-}
-
-/// Where among the arguments a place stands: cells, fractions, and the changes of all axes from a
-/// pixel to the next one to the right, and to the one below.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    first: usize,
-    pub(super) axes: usize,
-}
-
-impl Place {
-    pub(super) fn cell(self, axis: usize) -> usize {
-        self.first + axis
-    }
-
-    pub(super) fn fraction(self, axis: usize) -> usize {
-        self.first + self.axes + axis
-    }
-
-    /// Of all axes to the right, then of all axes down.
-    pub(super) fn changes(self) -> Range<usize> {
-        let first = self.first + 2 * self.axes;
-        first..first + 2 * self.axes
-    }
-}
-
-/// The places among the arguments: in texture space, and in space if the graph reads it.
-pub(super) fn places(graph: &Graph) -> impl Iterator<Item = Place> {
-    let space = Place {
-        first: FOOTPRINT.len(),
-        axes: 3,
-    };
-    let texture = Place { first: 0, axes: 2 };
-    std::iter::once(texture).chain(reads_position(graph).then_some(space))
-}
-
-/// The arguments with a footprint that is finite: one that is not is taken for the largest, whose
-/// filtered values are the far field's.
-pub(super) fn finite(b: &mut Builder, graph: &Graph, arguments: &Arguments) -> Vec<Value> {
-    let mut all = arguments.all();
-    let limit = b.f32(LARGEST_FOOTPRINT);
-    let zero = b.f32(0.0);
-    for place in places(graph) {
-        let mut regular = b.bool(true);
-        for &value in &all[place.changes()] {
-            let magnitude = b.abs(value);
-            let within = b.lt(magnitude, limit);
-            regular = b.and(regular, within);
-        }
-        for (i, at) in place.changes().enumerate() {
-            // The first axis changes to the right, the second one down.
-            let far = if i == 0 || i == place.axes + 1 {
-                limit
-            } else {
-                zero
-            };
-            all[at] = b.select(regular, all[at], far);
-        }
-        for axis in 0..place.axes {
-            let value = &mut all[place.fraction(axis)];
-            let magnitude = b.abs(*value);
-            let within = b.lt(magnitude, limit);
-            *value = b.select(within, *value, zero);
-        }
-    }
-    all
 }
 
 /// `quad` where a source's footprint lies between 0.02 and 0.6 wavelengths and something that is

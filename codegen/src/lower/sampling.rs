@@ -1,6 +1,8 @@
 //! Methods that evaluate the graph several times in a pixel: a fold over one function of it.
 
-use super::entry::{finish, finite, footprint_function, graph_function, guarded, places};
+use super::finish::{finish, guarded};
+use super::function::{footprint_function, graph_function};
+use super::place::{finite, places};
 use super::{Arguments, Compiler, Options, PixelFilter};
 use crate::float::Float;
 use crate::ir::{Builder, Module, Type as Scalar, Value};

@@ -2,30 +2,9 @@
 //! the module go.
 
 use super::function::{self, Context, Signature};
+use super::gap::{Gap, Spelled};
 use super::name::Scope;
 use crate::ir::{FunctionId, Module};
-
-/// The text of a function, and what it takes for granted.
-#[derive(Debug)]
-pub(crate) struct Spelled {
-    /// Texts, each before a gap but the last.
-    pieces: Vec<(String, Gap)>,
-    /// The names of locals: none is one of the module's.
-    locals: Vec<String>,
-    /// How many parts it has.
-    parts: usize,
-}
-
-/// What goes where a text has a gap.
-#[derive(Clone, Copy, Debug)]
-enum Gap {
-    /// Nothing: the end.
-    End,
-    /// The function's name: of itself, or of one of its callees from 1 on.
-    Name(usize),
-    /// The same as the name of a type.
-    Type(usize),
-}
 
 /// The first of the letters that stand for names while a text is written; those for types follow
 /// them one by one. They are of the private use area, so that no identifier has them.

@@ -8,7 +8,7 @@ use mipless_codegen::wgsl::{
     TABLES_BINDING, emit,
 };
 
-use super::{Gpu, GpuError};
+use super::{Gpu, GpuError, LARGEST_PROGRAM};
 use crate::image::{Image, channel_names};
 use crate::view::Size;
 
@@ -26,14 +26,12 @@ pub struct Pipeline {
     shader: Shader,
 }
 
-/// The longest program that a device is given, in instructions once calls are expanded, as drivers
-/// expand them: compiling takes longer than linear, and cannot be stopped. A software device (one
-/// thread of a server, LLVM 15) took 40 s for 218,000 and 61 s for 305,000; NVIDIA's driver 580 took
-/// 21 s for about 200,000.
-pub const LARGEST_PROGRAM: u64 = 300_000;
-
 /// The smallest buffer that is bound in place of an empty one: the size of a vec4f.
 const LEAST: u64 = 16;
+
+/// Footprints in the first dispatch of a pipeline. Drivers stop a dispatch that takes seconds, so
+/// the size follows the time that the one before took.
+const FIRST_CHUNK: usize = 1 << 14;
 
 impl Gpu {
     /// Compiles a program, with its default parameters.
@@ -105,7 +103,7 @@ impl Gpu {
             let tables = self.filled(bytemuck::cast_slice(&tables), wgpu::BufferUsages::STORAGE);
             (pipeline, layout, parameters, tables)
         })?;
-        let chunk = AtomicUsize::new(super::render::FIRST_CHUNK);
+        let chunk = AtomicUsize::new(FIRST_CHUNK);
         let results = result_names(&shader);
         Ok(Pipeline {
             pipeline,

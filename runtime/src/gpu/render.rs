@@ -31,9 +31,6 @@ impl Timing {
     }
 }
 
-/// Footprints in the first dispatch of a pipeline. Drivers stop a dispatch that takes seconds, so
-/// the size follows the time that the one before took.
-pub(super) const FIRST_CHUNK: usize = 1 << 14;
 /// Within every device's limit of workgroups a dispatch, too.
 const LARGEST_CHUNK: usize = 1 << 20;
 const SMALLEST_CHUNK: usize = 1 << 8;
