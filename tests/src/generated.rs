@@ -4,6 +4,9 @@ use crate::{asked, root};
 use std::fs;
 use std::path::Path;
 
+/// The command that makes all generated files fresh.
+pub const FRESH: &str = "MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy --test book";
+
 /// Compares a committed file with what it should hold, or writes it.
 ///
 /// # Errors
@@ -22,7 +25,7 @@ pub fn compare(path: &str, wanted: &str) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "{path} is stale: MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy"
+        "{path} is stale: {FRESH}"
     ))
 }
 

@@ -11,11 +11,14 @@
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `tidy` | the order of the house: arrows, generated files, names |
+//! | `book` | the pages of the nodes and their pictures, links and graphs in all documents |
 
+pub mod book;
 pub mod case;
 pub mod generated;
 pub mod random;
 pub mod random_graph;
+pub mod thumbnail;
 pub mod timing;
 pub mod tolerance;
 
