@@ -35,16 +35,12 @@ pub fn page(def: &NodeDef) -> String {
         "The example, {side} uv wide and {} uv wide, {SIDE} pixels each",
         FAR * side
     );
-    let [low, high] = look.range;
-    if look.grows {
-        let far = low + (high - low) * FAR as f32;
-        write!(
-            caption,
-            "; black to white is {low} to {high}, and {low} to {far}"
-        )
-        .expect("a string");
-    } else if look.range != [0.0, 1.0] {
-        write!(caption, "; black to white is {low} to {high}").expect("a string");
+    let range = |[low, high]: [f32; 2]| format!("{low} to {high}");
+    let [close, wide] = look.ranges.map(range);
+    if close != wide {
+        caption += &format!("; from black to white {close} near, {wide} far");
+    } else if close != "0 to 1" {
+        caption += &format!("; from black to white {close}");
     }
     let name = spec.name;
     format!(

@@ -24,9 +24,7 @@ pub fn compare(path: &str, wanted: &str) -> Result<(), String> {
         fs::write(&file, wanted).expect("the file is written");
         return Ok(());
     }
-    Err(format!(
-        "{path} is stale: {FRESH}"
-    ))
+    Err(format!("{path} is stale: {FRESH}"))
 }
 
 /// The names of the files of a folder that end as given, sorted; none if there is no such folder.

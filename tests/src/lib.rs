@@ -16,6 +16,7 @@
 pub mod book;
 pub mod case;
 pub mod generated;
+pub mod markdown;
 pub mod random;
 pub mod random_graph;
 pub mod thumbnail;
