@@ -1,6 +1,5 @@
-//! The book: its generated pages and pictures are those of the catalogue, and what documents link to
-//! and quote is there. What is stale is made fresh by
-//! `MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy --test book`.
+//! The generated pages and pictures of the book are those of the catalogue. `bash .ci/fresh` makes
+//! them fresh.
 
 use mipless_runtime::image::Image;
 use mipless_runtime::image_file::{self, Bits, Format};

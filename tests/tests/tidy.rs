@@ -1,5 +1,4 @@
-//! The order of the house. A generated file that is stale is made fresh by
-//! `MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy --test book`.
+//! The order of the house. `bash .ci/fresh` makes generated files fresh.
 
 use mipless_tests::case::all;
 use mipless_tests::generated::compare;
