@@ -75,8 +75,8 @@ fn heading(word: &str) -> String {
 pub fn index() -> String {
     let mut text = format!(
         "# All {} nodes\n\nEach node has a page with its ports, what it computes, its statistics, how \
-         accurate its filter is, and an example. The two pictures are that example near and far: \
-         `mipless nodes NAME` prints the same page.\n",
+         accurate its filter is, and an example. The two pictures are that example near and far. \
+         `mipless nodes NAME` prints a page.\n",
         mipless::catalogue().len()
     );
     for (category, nodes) in by_category() {
