@@ -4,7 +4,7 @@ use crate::{asked, root};
 use std::fs;
 use std::path::Path;
 
-/// The command that makes all generated files fresh.
+/// What to do about a stale file.
 pub const FRESH: &str = "bash .ci/fresh makes it fresh";
 
 /// Compares a committed file with what it should hold, or writes it.
