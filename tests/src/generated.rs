@@ -4,6 +4,9 @@ use crate::{asked, root};
 use std::fs;
 use std::path::Path;
 
+/// What to do about a stale file.
+pub const FRESH: &str = "bash .ci/fresh makes it fresh";
+
 /// Compares a committed file with what it should hold, or writes it.
 ///
 /// # Errors
@@ -21,9 +24,7 @@ pub fn compare(path: &str, wanted: &str) -> Result<(), String> {
         fs::write(&file, wanted).expect("the file is written");
         return Ok(());
     }
-    Err(format!(
-        "{path} is stale: MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy"
-    ))
+    Err(format!("{path} is stale: {FRESH}"))
 }
 
 /// The names of the files of a folder that end as given, sorted; none if there is no such folder.

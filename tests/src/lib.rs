@@ -11,11 +11,16 @@
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `tidy` | the order of the house: arrows, generated files, names |
+//! | `book` | the pages of the nodes and their pictures |
+//! | `links` | what all documents link to, show and quote |
 
+pub mod book;
 pub mod case;
 pub mod generated;
+pub mod markdown;
 pub mod random;
 pub mod random_graph;
+pub mod thumbnail;
 pub mod timing;
 pub mod tolerance;
 
@@ -61,3 +66,8 @@ pub fn cases(usual: u32) -> u32 {
         usual
     }
 }
+
+/// The page of the book for people who depend on the crate: its examples run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/book/src/tool.md")]
+pub mod tool {}

@@ -1,8 +1,7 @@
-//! The order of the house. A generated file that is stale is made fresh by
-//! `MIPLESS_WRITE=1 cargo test -p mipless-tests --test tidy`.
+//! The order of the house. `bash .ci/fresh` makes generated files fresh.
 
 use mipless_tests::case::all;
-use mipless_tests::generated::{compare, names};
+use mipless_tests::generated::compare;
 use mipless_tests::root;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -200,20 +199,6 @@ fn schema() -> serde_json::Value {
 fn the_schema_is_fresh() {
     let text = serde_json::to_string_pretty(&schema()).expect("JSON") + "\n";
     compare("graph/graph.schema.json", &text).unwrap_or_else(|error| panic!("{error}"));
-}
-
-#[test]
-fn the_reference_pages_are_fresh() {
-    let mut wanted = Vec::new();
-    let mut stale = Vec::new();
-    for def in mipless::catalogue() {
-        let name = format!("{}.md", def.spec.name);
-        stale.extend(compare(&format!("docs/nodes/{name}"), &mipless_nodes::page(def)).err());
-        wanted.push(name);
-    }
-    let held = names(&root().join("docs/nodes"), ".md");
-    stale.extend(held.into_iter().filter(|name| !wanted.contains(name)));
-    assert!(stale.is_empty(), "{}", stale.join("\n"));
 }
 
 #[test]
