@@ -367,5 +367,5 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "targets"))]
 mod tests;
