@@ -2,7 +2,7 @@
 
 use crate::mistake::{Mistake, Status};
 use crate::report::Report;
-use mipless::{Diagnostic, Folder, Method, Texture};
+use mipless::{Diagnostic, Folder, Method, Texture, name_of_file};
 use mipless_graph::CheckOptions;
 use std::fs::File;
 use std::io::{self, Read};
@@ -42,7 +42,7 @@ pub(crate) fn warn(path: &Path, texture: &Texture, report: &mut Report) {
 pub(crate) fn parse(path: &Path, text: &str, options: &CheckOptions) -> Result<Texture, Mistake> {
     // What is read from standard input names files relative to the current folder.
     let folder = Folder(path.parent().unwrap_or(Path::new("")).to_path_buf());
-    Texture::with_files(text, options, &folder)
+    Texture::with_name(&name_of_file(path), text, options, &folder)
         .map_err(|diagnostics| Mistake::graph(path, diagnostics))
 }
 
@@ -78,6 +78,8 @@ pub(crate) fn read(path: &Path) -> Result<String, Mistake> {
 
 /// The line and the column, from 1, of what follows `text`.
 fn place(text: &str) -> (u32, u32) {
+    // A byte order mark is no column of an editor.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let line = text.bytes().filter(|&byte| byte == b'\n').count() + 1;
     let column = text.rsplit('\n').next().unwrap_or("").chars().count() + 1;
     (line as u32, column as u32)
@@ -89,5 +91,6 @@ mod tests {
     fn places_count_characters_from_one() {
         assert_eq!(super::place(""), (1, 1));
         assert_eq!(super::place("a\nöb"), (2, 3));
+        assert_eq!(super::place("\u{feff}ab"), (1, 3));
     }
 }

@@ -1,6 +1,10 @@
 //! The IR, the moment algebra, the planner, the WGSL emitter and the CPU batch evaluator.
 //!
 //! This crate knows no node by name: it receives node definitions as a slice.
+//!
+//! The feature `targets`, on by default, brings naga: `target::validate` and `target::translate`.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod cpu;
 pub mod float;

@@ -1,45 +1,16 @@
 //! Targets: validation of emitted WGSL and its translation, both by naga, and the manifest.
+//!
+//! All but the manifest needs the feature `targets`: naga is much to build for a host that takes the
+//! WGSL as it is.
 
 mod manifest;
+#[cfg(feature = "targets")]
 mod translate;
+#[cfg(feature = "targets")]
+mod validate;
 
 pub use manifest::{Manifest, ManifestOutput, ManifestParameter, ManifestTable, Range};
+#[cfg(feature = "targets")]
 pub use translate::{Target, TranslateError, Translated, translate};
-
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use std::fmt;
-
-/// A shader that naga has read and found valid.
-#[derive(Debug)]
-pub struct Validated {
-    /// naga's form of it.
-    pub module: naga::Module,
-    /// What the validator found out about it.
-    pub info: ModuleInfo,
-}
-
-/// Why naga rejects a shader: text that shows the place in the source.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ValidateError(pub String);
-
-impl fmt::Display for ValidateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for ValidateError {}
-
-/// Reads WGSL text and validates it.
-///
-/// # Errors
-/// If it does not parse or is not valid.
-pub fn validate(source: &str) -> Result<Validated, ValidateError> {
-    let module = naga::front::wgsl::parse_str(source)
-        .map_err(|error| ValidateError(error.emit_to_string(source)))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
-    let info = validator
-        .validate(&module)
-        .map_err(|error| ValidateError(error.emit_to_string(source)))?;
-    Ok(Validated { module, info })
-}
+#[cfg(feature = "targets")]
+pub use validate::{ValidateError, Validated, validate};

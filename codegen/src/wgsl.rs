@@ -368,5 +368,5 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "targets"))]
 mod tests;

@@ -24,8 +24,9 @@ pub const VERSION: u64 = 1;
 pub struct Document {
     /// The `$schema` for editors; no meaning here.
     pub schema: Option<String>,
-    /// The name, after which the generated functions are named.
-    pub name: String,
+    /// The name, after which the generated functions are named. A document without one is called as
+    /// its file is, which whoever reads the file knows.
+    pub name: Option<String>,
     /// The graph.
     pub body: Body,
     /// The sub-graphs, used as node type `graph:NAME`.
@@ -111,11 +112,18 @@ pub enum Binding {
     Input(String),
 }
 
+/// The text without the byte order mark that some editors put before it: it is no part of the
+/// document, and editors do not count it as a column.
+pub(crate) fn unmarked(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
 impl Document {
     /// Reads a document from text, with every mistake of its structure. What could be read is
     /// there even if something else could not; there is no document only where the text is not
-    /// JSON, is not an object, or is of an unknown version.
+    /// JSON, is not an object, or is of an unknown version. A byte order mark is passed over.
     pub fn parse(text: &str) -> (Option<Self>, Vec<Diagnostic>) {
+        let text = unmarked(text);
         match Tree::parse(text) {
             Ok(mut tree) => Self::from_tree(text, &mut tree),
             Err(diagnostic) => (None, vec![*diagnostic]),

@@ -127,7 +127,8 @@ pub struct Output {
 /// A resolved graph without errors of names, cycles, types or ranges.
 #[derive(Clone, Debug)]
 pub struct Graph {
-    /// The document's name.
+    /// The document's name; where it has none, [`Graph::NAMELESS`], which whoever reads a file
+    /// replaces by the file's name.
     pub name: String,
     /// The graph's inputs, in the document's order.
     pub parameters: Vec<Parameter>,
@@ -140,6 +141,9 @@ pub struct Graph {
 }
 
 impl Graph {
+    /// What the graph of a document is called that has no name and is no file.
+    pub const NAMELESS: &str = "texture";
+
     /// The node `id`.
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.index()]

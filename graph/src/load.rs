@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::document::{Tree, locate};
+use crate::document::{Tree, locate, unmarked};
 use crate::resolve::resolve_with_files;
 use crate::{Diagnostic, Document, FileReference, Graph, NodeSpec};
 
@@ -20,8 +20,9 @@ pub struct Loaded {
     pub files: Vec<FileReference>,
 }
 
-/// Reads, upgrades and resolves a document.
+/// Reads, upgrades and resolves a document. A byte order mark before the text is passed over.
 pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
+    let text = unmarked(text);
     let mut tree = match Tree::parse(text) {
         Ok(tree) => tree,
         Err(diagnostic) => {

@@ -40,7 +40,7 @@ pub fn schema(specs: &[&'static NodeSpec]) -> Value {
     let mut properties = body_properties();
     properties.insert("$schema".to_owned(), json!({ "type": "string" }));
     properties.insert("version".to_owned(), json!({ "const": VERSION }));
-    let name = "The generated functions are named after it.";
+    let name = "The generated functions are named after it; without it, after the file.";
     properties.insert(
         "name".to_owned(),
         json!({ "type": "string", "description": name }),
@@ -57,7 +57,7 @@ pub fn schema(specs: &[&'static NodeSpec]) -> Value {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Mipless texture graph",
         "type": "object",
-        "required": ["version", "name", "nodes", "outputs"],
+        "required": ["version", "nodes", "outputs"],
         "additionalProperties": false,
         "properties": properties,
         "$defs": definitions,

@@ -1,12 +1,29 @@
 //! Where the files come from that a graph names.
 
+use mipless_graph::Graph;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: u64 = 256 << 20;
+
+/// The most texels of a picture's side.
+pub const LARGEST_SIDE: u32 = 16_384;
+
+/// The most texels of a picture: 2048 × 2048, whose moments take about 350 MB in colour.
+pub const LARGEST_PICTURE: u64 = 2048 * 2048;
+
+/// What a graph in a file is called that has no name: the file's name without its extension, and
+/// `texture` where that is no name (`-`, which stands for standard input, or a folder's `..`).
+pub fn name_of_file(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    if stem.is_empty() || path == Path::new("-") {
+        return Graph::NAMELESS.to_owned();
+    }
+    stem.into_owned()
+}
 
 /// Gives the bytes of the files that graphs name: a folder, an archive, a database of a tool.
 pub trait Files {

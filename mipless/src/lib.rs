@@ -1,6 +1,17 @@
 //! Self-filtering procedural texture graphs for tools: load, check, edit, compile, evaluate.
 //!
-//! This crate needs no graphics device. A tour:
+//! This crate needs no graphics device. It has two features, both of them on by default:
+//!
+//! - `files` decodes the pictures that graphs name ([`Texture::from_file`], [`Texture::with_files`]).
+//!   Without it, a graph that names one has a located mistake, `feature-off`.
+//! - `targets` validates shaders and translates them to SPIR-V, GLSL, HLSL and MSL by naga
+//!   (`target::validate`, `target::translate`). Without it there are WGSL and its
+//!   [`target::Manifest`], and naga is not built.
+//!
+//! A tool that only wants WGSL of graphs without pictures says `default-features = false`, and
+//! builds in half the time.
+//!
+//! A tour:
 //!
 //! # Load and check
 //! ```
@@ -86,15 +97,36 @@
 //! let shader = wgsl::emit(&program, &wgsl::Options::default());
 //! assert!(shader.source.contains("fn clouds(footprint: Footprint"));
 //! ```
+//!
+//! # A graph needs no name
+//! Without one it is called as its file is, or as you say.
+//! ```
+//! # use mipless::{CheckOptions, NoFiles, Options, Texture, wgsl};
+//! let json = r#"{ "version": 1, "nodes": { "noise": { "type": "noise2d" } },
+//!     "outputs": { "height": { "node": "noise" } } }"#;
+//! let texture = Texture::from_json(json).expect("the graph has no mistakes");
+//! assert_eq!(texture.name(), "texture");
+//!
+//! let options = CheckOptions::default();
+//! let texture = Texture::with_name("Old wall", json, &options, &NoFiles).expect("the same");
+//! assert_eq!((texture.name(), &texture.document().name), ("Old wall", &None));
+//! let shader = wgsl::emit(&texture.compile(&Options::default()), &wgsl::Options::default());
+//! assert!(shader.source.contains("fn old_wall(footprint: Footprint"));
+//! ```
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod evaluator;
 mod files;
+#[cfg(feature = "files")]
 mod picture;
 mod resource;
 mod texture;
 
 pub use evaluator::{SetError, TextureEvaluator};
-pub use files::{Files, Folder, LARGEST_FILE, NoFiles};
+pub use files::{
+    Files, Folder, LARGEST_FILE, LARGEST_PICTURE, LARGEST_SIDE, NoFiles, name_of_file,
+};
 pub use mipless_codegen::cpu::Footprint;
 pub use mipless_codegen::ir::Program;
 pub use mipless_codegen::{Method, NodeDef, Options, PixelFilter, target, wgsl};
@@ -104,5 +136,4 @@ pub use mipless_graph::{
     parse_setting, schema,
 };
 pub use mipless_nodes::catalogue;
-pub use picture::{LARGEST_PICTURE, LARGEST_SIDE};
 pub use texture::{FromFileError, Texture, specs};

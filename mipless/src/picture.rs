@@ -1,5 +1,6 @@
 //! Pictures from the bytes of PNG, JPEG and OpenEXR files of 8, 16 and 32 bits.
 
+use crate::files::{LARGEST_PICTURE, LARGEST_SIDE};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use exr::prelude as openexr;
 use exr::prelude::{ReadChannels, ReadLayers};
@@ -7,12 +8,6 @@ use mipless_graph::Picture;
 use std::fmt;
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-
-/// The most texels of a side.
-pub const LARGEST_SIDE: u32 = 16_384;
-
-/// The most texels of a picture: 2048 × 2048, whose moments take about 350 MB in colour.
-pub const LARGEST_PICTURE: u64 = 2048 * 2048;
 
 /// Half a float's largest number: what a picture's infinities become.
 const LARGEST_NUMBER: f32 = 65_504.0;

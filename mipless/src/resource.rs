@@ -1,10 +1,13 @@
 //! The pictures that a graph names, with what is wrong with them.
 
-use crate::files::{Files, LARGEST_FILE};
-use crate::picture::{PictureError, decode};
+#[cfg(feature = "files")]
+mod decoded;
+#[cfg(feature = "files")]
+use decoded::one;
+
+use crate::files::Files;
 use mipless_graph::{Diagnostic, FileReference, Images, Picture, Severity};
 use std::collections::BTreeMap;
-use std::io;
 use std::sync::Arc;
 
 /// What is said of a file wherever it is named.
@@ -51,65 +54,15 @@ pub(crate) fn read(references: &[FileReference], files: &dyn Files) -> (Images, 
     (images, diagnostics)
 }
 
-fn one(name: &str, files: &dyn Files) -> (Picture, Option<Remark>) {
-    let decoded = match files.read(name) {
-        Ok(bytes) => decode(&bytes).map_err(|error| unusable(name, &error)),
-        Err(error) => Err(unreadable(name, &error)),
-    };
-    match decoded {
-        Ok(decoded) => {
-            let remark = (decoded.replaced > 0).then(|| Remark {
-                severity: Severity::Warning,
-                code: "not-finite-texels",
-                message: format!("{} numbers of `{name}` are not finite", decoded.replaced),
-                help: "NaN is taken for 0, and infinity for 65504",
-            });
-            (decoded.picture, remark)
-        }
-        Err(remark) => (Picture::new((1, 1), 1, false, vec![0.0]), Some(remark)),
-    }
+/// Stands in for a picture that cannot be used.
+fn nothing() -> Picture {
+    Picture::new((1, 1), 1, false, vec![0.0])
 }
 
-fn unreadable(name: &str, error: &io::Error) -> Remark {
-    let limit = LARGEST_FILE >> 20;
-    match error.kind() {
-        io::ErrorKind::NotFound => Remark::error(
-            "missing-file",
-            format!("there is no file `{name}`: {error}"),
-            "names are relative to the file of the graph",
-        ),
-        io::ErrorKind::FileTooLarge => Remark::error(
-            "image-too-large",
-            format!("`{name}` is larger than {limit} MiB"),
-            "make it smaller",
-        ),
-        io::ErrorKind::IsADirectory => Remark::error(
-            "unreadable-file",
-            format!("`{name}` is a folder"),
-            "name a picture in it",
-        ),
-        _ => Remark::error(
-            "unreadable-file",
-            format!("`{name}` cannot be read: {error}"),
-            "the file must be readable",
-        ),
-    }
-}
-
-fn unusable(name: &str, error: &PictureError) -> Remark {
-    let message = format!("`{name}` cannot be used: {error}");
-    match error {
-        PictureError::Format => {
-            Remark::error("not-an-image", message, "convert it to .png, .jpg or .exr")
-        }
-        PictureError::Corrupt(..) | PictureError::Empty => {
-            Remark::error("bad-image", message, "save or export it again")
-        }
-        PictureError::TooLarge(..) => Remark::error("image-too-large", message, "scale it down"),
-        PictureError::Channels(_) => Remark::error(
-            "bad-image",
-            message,
-            "name its channels R, G, B and A, or Y, or X, Y, Z and W",
-        ),
-    }
+/// Without a decoder no file is a picture, so that none is read.
+#[cfg(not(feature = "files"))]
+fn one(name: &str, _: &dyn Files) -> (Picture, Option<Remark>) {
+    let message = format!("`{name}` is not read: the feature `files` of mipless is off");
+    let help = "build the tool with the feature `files` of the crate `mipless`";
+    (nothing(), Some(Remark::error("feature-off", message, help)))
 }

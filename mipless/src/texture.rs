@@ -1,13 +1,14 @@
 //! A checked graph with its catalogue.
 
-use crate::files::{Files, Folder, NoFiles};
+use crate::files::{Files, Folder, NoFiles, name_of_file};
 use crate::{Options, Program, TextureEvaluator, resource};
 use std::fmt;
 use std::io;
 use std::path::Path;
 
 use mipless_graph::{
-    CheckOptions, Checked, Diagnostic, Document, NodeSpec, Output, Parameter, Signal, check, load,
+    CheckOptions, Checked, Diagnostic, Document, Graph, NodeSpec, Output, Parameter, Signal, check,
+    load,
 };
 
 /// The specs of the catalogue.
@@ -53,17 +54,24 @@ pub struct Texture {
 
 impl Texture {
     /// Loads and checks the JSON graph of a file, with the pictures that it names, relative to
-    /// its folder.
+    /// its folder (reading them needs the feature `files`). A graph without a name is called as
+    /// the file is, without its extension.
     ///
     /// # Errors
     /// If the file cannot be read as text; else every mistake, located, and the warnings with them.
     pub fn from_file(path: &Path) -> Result<Self, FromFileError> {
         let text = std::fs::read_to_string(path).map_err(FromFileError::Unreadable)?;
         let folder = Folder(path.parent().unwrap_or(Path::new("")).to_path_buf());
-        Self::with_files(&text, &CheckOptions::default(), &folder).map_err(FromFileError::Mistakes)
+        Self::with_name(
+            &name_of_file(path),
+            &text,
+            &CheckOptions::default(),
+            &folder,
+        )
+        .map_err(FromFileError::Mistakes)
     }
 
-    /// Loads and checks a JSON graph that names no files.
+    /// Loads and checks a JSON graph that names no files. One without a name is called `texture`.
     ///
     /// # Errors
     /// Every mistake, located, and the warnings with them.
@@ -82,11 +90,26 @@ impl Texture {
 
     /// The same for a graph that may name files, which `files` gives: pictures of at most
     /// [`crate::LARGEST_SIDE`] texels a side and [`crate::LARGEST_PICTURE`] in all, in files of at
-    /// most [`crate::LARGEST_FILE`] bytes.
+    /// most [`crate::LARGEST_FILE`] bytes. Without the feature `files` there is no decoder, and
+    /// each name of a picture is a mistake that says so.
     ///
     /// # Errors
     /// Every mistake, those of the files among them, located, and the warnings with them.
     pub fn with_files(
+        text: &str,
+        options: &CheckOptions,
+        files: &dyn Files,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        Self::with_name(Graph::NAMELESS, text, options, files)
+    }
+
+    /// The same; a graph without a name is called `name`, in its shaders too, as an identifier that
+    /// is made of it. The document stays without one.
+    ///
+    /// # Errors
+    /// Every mistake, those of the files among them, located, and the warnings with them.
+    pub fn with_name(
+        name: &str,
         text: &str,
         options: &CheckOptions,
         files: &dyn Files,
@@ -100,6 +123,9 @@ impl Texture {
             return Err(diagnostics);
         };
         graph.images = images;
+        if document.name.is_none() {
+            name.clone_into(&mut graph.name);
+        }
         let unusable = diagnostics.iter().any(Diagnostic::is_error);
         match check(graph, options) {
             Ok(checked) if !unusable => {
@@ -124,6 +150,11 @@ impl Texture {
     /// The document, to edit and to save; load the result again.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+
+    /// The graph's name: the document's, or that which stood in for it.
+    pub fn name(&self) -> &str {
+        &self.checked.graph().name
     }
 
     /// The checked graph.

@@ -10,7 +10,12 @@
 //! - [`device::Device`] is the choice between the two. [`metrics`] says how far two images are apart, and [`compare`] sets them side by side.
 //! - [`plan`] measures error and cost of the methods and chooses one; [`chart`] draws what it found.
 //!
+//! Two features, both on by default: `files` writes pictures ([`image_file`]), `gpu` renders on a
+//! graphics device.
+//!
 //! This is the only crate that knows wgpu, and it holds no semantics of graphs.
+
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod chart;
 pub mod compare;
@@ -19,6 +24,7 @@ pub mod device;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod image;
+#[cfg(feature = "files")]
 pub mod image_file;
 pub mod job;
 pub mod metrics;

@@ -3,6 +3,7 @@
 mod bad_graphs;
 mod folder;
 mod images;
+mod names;
 
 use folder::{Folder, GRAPH, Run};
 use serde_json::Value;

@@ -7,7 +7,24 @@
 use rustc_hash::FxHashSet;
 use std::sync::LazyLock;
 
-/// WGSL: built-in functions and types; its keywords come from naga.
+/// WGSL: keywords, and words reserved for later.
+const WGSL_KEYWORDS: &str = "
+    alias break case const const_assert continue continuing default diagnostic discard else enable
+    false fn for if let loop override requires return struct switch true var while NULL Self
+    abstract active alignas alignof as asm asm_fragment async attribute auto await become cast catch
+    class co_await co_return co_yield coherent column_major common compile compile_fragment concept
+    const_cast consteval constexpr constinit crate debugger decltype delete demote demote_to_helper
+    do dynamic_cast enum explicit export extends extern external fallthrough filter final finally
+    friend from fxgroup get goto groupshared highp impl implements import inline instanceof
+    interface layout lowp macro macro_rules match mediump meta mod module move mut mutable namespace
+    new nil noexcept noinline nointerpolation non_coherent noncoherent noperspective null nullptr of
+    operator package packoffset partition pass patch pixelfragment precise precision premerge priv
+    protected pub public readonly ref regardless register reinterpret_cast require resource restrict
+    self set shared sizeof smooth snorm static static_assert static_cast std subroutine super target
+    template this thread_local throw trait try type typedef typeid typename typeof union unless
+    unorm unsafe unsized use using varying virtual volatile wgsl where with writeonly yield";
+
+/// WGSL: built-in functions and types.
 const WGSL: &str = "
     abs acos acosh all any array arraylength asin asinh atan atan2 atanh atomic bitcast bool ceil
     clamp cos cosh countleadingzeros countonebits counttrailingzeros cross degrees determinant
@@ -69,10 +86,9 @@ const MSL: &str = "
     float2x2 float3x3 float4x4 atomic_int atomic_bool true false sizeof";
 
 static WORDS: LazyLock<FxHashSet<&'static str>> = LazyLock::new(|| {
-    let ours = [WGSL, GLSL, HLSL, MSL]
+    [WGSL_KEYWORDS, WGSL, GLSL, HLSL, MSL]
         .into_iter()
-        .flat_map(str::split_whitespace);
-    ours.chain(naga::keywords::wgsl::RESERVED.iter().copied())
+        .flat_map(str::split_whitespace)
         .collect()
 });
 
@@ -83,4 +99,16 @@ pub(super) fn is_reserved(word: &str) -> bool {
     }
     word.bytes().any(|b| b.is_ascii_uppercase())
         && WORDS.contains(word.to_ascii_lowercase().as_str())
+}
+
+#[cfg(all(test, feature = "targets"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_keywords_of_wgsl_are_those_of_naga() {
+        let ours: FxHashSet<&str> = WGSL_KEYWORDS.split_whitespace().collect();
+        let theirs = naga::keywords::wgsl::RESERVED.iter().copied().collect();
+        assert_eq!(ours, theirs);
+    }
 }

@@ -290,10 +290,7 @@ impl<'t> Reader<'t> {
                 _ => None,
             })
             .flatten();
-        match self.field(&members, "name", Self::text) {
-            Some(name) => document.name = name.unwrap_or_default(),
-            None => self.missing(tree, "name", "the generated functions are named after it"),
-        }
+        document.name = self.field(&members, "name", Self::text).flatten();
         document.body = self.body(tree, &members);
         document.graphs = self
             .field(&members, "graphs", |reader, tree| {

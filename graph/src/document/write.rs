@@ -9,7 +9,7 @@ pub(super) fn document(document: &Document) -> Value {
     let mut json = Map::new();
     text(&mut json, "$schema", document.schema.as_ref());
     json.insert("version".to_owned(), VERSION.into());
-    json.insert("name".to_owned(), document.name.clone().into());
+    text(&mut json, "name", document.name.as_ref());
     fill(&mut json, &document.body);
     if !document.graphs.is_empty() {
         let graphs = document.graphs.iter().map(|(name, graph)| {

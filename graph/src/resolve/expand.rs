@@ -45,7 +45,7 @@ pub(super) fn expand(
     templates: &[Template<'_>],
 ) -> Graph {
     let mut graph = Graph {
-        name: document.name.clone(),
+        name: (document.name.clone()).unwrap_or_else(|| Graph::NAMELESS.to_owned()),
         parameters: Vec::new(),
         nodes: Vec::new(),
         outputs: Vec::new(),

@@ -97,6 +97,18 @@ fn an_output_that_a_node_does_not_have_is_named() {
 }
 
 #[test]
+fn a_byte_order_mark_moves_no_place() {
+    let text = r#"{ "version": 1, "nodes": 7, "outputs": {} }"#;
+    for text in [text, &text[..30]] {
+        let marked = format!("\u{feff}{text}");
+        assert_eq!(errors(&marked), errors(text));
+        assert_eq!(errors(&marked)[0].line, Some(1));
+    }
+    // One mark is none of the text; another is.
+    assert_eq!(error("\u{feff}\u{feff}{}").code, "syntax");
+}
+
+#[test]
 fn every_mistake_of_one_file_is_reported_once() {
     let found = errors(
         r#"{
@@ -160,7 +172,7 @@ fn versions_are_checked() {
         .iter()
         .map(|e| e.pointer.as_deref().unwrap_or("-"))
         .collect();
-    assert_eq!(codes, ["/version", "/name", "/nodes", "/outputs"]);
+    assert_eq!(codes, ["/version", "/nodes", "/outputs"]);
     assert_eq!(error("[]").code, "wrong-json-type");
 }
 

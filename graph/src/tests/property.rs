@@ -158,9 +158,12 @@ proptest! {
     #[test]
     fn nearly_right_documents_too(
         mut document in body(), g in body(), h in body(), cut in 0_usize..4000,
+        named: bool,
     ) {
         document["version"] = json!(1);
-        document["name"] = json!("t");
+        if named {
+            document["name"] = json!("t");
+        }
         document["graphs"] = json!({ "g": g, "h": h });
         let text = document.to_string();
         hold(&text);

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{chain, graph};
 use crate::testing::{SPECS, text};
-use crate::{CheckOptions, Document, Literal, Source, Type, check, load, schema};
+use crate::{CheckOptions, Document, Graph, Literal, Source, Type, check, load, schema};
 
 const MARBLE: &str = r##"{
   "$schema": "graph.schema.json", "version": 1, "name": "marble", "doc": "Stone.",
@@ -41,6 +41,28 @@ fn a_graph_stands_in_topological_order_with_defaults_and_types() {
         panic!("stops")
     };
     assert_eq!(stops.stops[0].at, -1.0);
+}
+
+#[test]
+fn a_document_without_a_name_keeps_none() {
+    let text = MARBLE.replace("\"name\": \"marble\", ", "");
+    assert_ne!(text, MARBLE);
+    assert_eq!(graph(&text).name, Graph::NAMELESS);
+    let (document, mistakes) = Document::parse(&text);
+    assert_eq!(mistakes, []);
+    let document = document.expect("a document");
+    assert_eq!(document.name, None);
+    assert_eq!(document.to_json().get("name"), None);
+    let (again, mistakes) = Document::parse(&document.to_text());
+    assert_eq!(mistakes, []);
+    assert_eq!(again, Some(document));
+}
+
+#[test]
+fn a_byte_order_mark_is_passed_over() {
+    let marked = format!("\u{feff}{MARBLE}");
+    assert_eq!(Document::parse(&marked), Document::parse(MARBLE));
+    assert_eq!(graph(&marked).name, "marble");
 }
 
 #[test]

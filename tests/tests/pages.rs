@@ -2,11 +2,11 @@
 //! holds.
 
 use mipless_graph::Category;
-use std::path::Path;
+use mipless_tests::root;
 
 #[test]
 fn the_pages_of_sources_state_their_statistics_and_the_test_that_holds_them() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = root();
     let sources: Vec<_> = (mipless_nodes::specs().into_iter())
         .filter(|spec| spec.category == Category::Noise || spec.name == "image")
         .collect();
