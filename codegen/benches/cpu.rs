@@ -6,7 +6,7 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use mipless_codegen::cpu::{Evaluator, Input, Level, Scratch};
-use mipless_codegen::ir::{Builder, Inst, Module, Value};
+use mipless_codegen::ir::{Builder, Float, Inst, Module};
 
 /// A tile of 64 × 64 pixels.
 const LANES: usize = 4096;
@@ -18,26 +18,20 @@ fn main() {
 /// A program of about a thousand sums, differences, products and limits with `live` values in
 /// flight; `separate` keeps sums from following products directly.
 fn arithmetic(live: usize, separate: bool) -> Module {
-    let mut b = Builder::new("arithmetic", "Arithmetic on many live values.");
-    let [u, v] = ["u", "v"].map(|name| b.param_f32(name));
-    let mut values: Vec<Value> = Vec::new();
-    for i in 0..live {
-        let scaled = b.scale(u, 0.3 + i as f32 * 0.07);
-        values.push(b.sub(scaled, v));
-    }
+    let b = &Builder::new("arithmetic", "Arithmetic on many live values.");
+    let [u, v] = ["u", "v"].map(|name| b.float_param(name));
+    let start = (0..live).map(|i| u * (0.3 + i as f32 * 0.07) - v);
+    let mut values: Vec<Float<'_>> = start.collect();
     for round in 0..1000 / live {
         for i in 0..live {
             let (x, y, z) = (values[i], values[(i + 1) % live], values[(i + 3) % live]);
             values[i] = match (i + round) % 5 {
-                0 => b.add(x, y),
-                1 => b.mul(y, z),
-                2 => b.sub(x, z),
-                3 => b.min(x, y),
-                _ if separate => b.max(x, z),
-                _ => {
-                    let product = b.mul(x, y);
-                    b.add(product, z)
-                }
+                0 => x + y,
+                1 => y * z,
+                2 => x - z,
+                3 => x.min(y),
+                _ if separate => x.max(z),
+                _ => x * y + z,
             };
         }
     }
@@ -48,19 +42,18 @@ fn arithmetic(live: usize, separate: bool) -> Module {
 }
 
 /// A thousand applications of one function of one operand.
-fn repeated(op: fn(&mut Builder, Value) -> Value) -> Module {
-    let mut b = Builder::new("repeated", "One function over and over.");
-    let [u, v] = ["u", "v"].map(|name| b.param_f32(name));
-    let mut values = [u, v];
+fn repeated(op: for<'b> fn(Float<'b>) -> Float<'b>) -> Module {
+    let b = &Builder::new("repeated", "One function over and over.");
+    let mut values = ["u", "v"].map(|name| b.float_param(name));
     for i in 0..1000 {
-        values[i % 2] = op(&mut b, values[i % 2]);
+        values[i % 2] = op(values[i % 2]);
     }
     b.result("first", values[0]);
     b.result("second", values[1]);
     module_of(b)
 }
 
-fn module_of(builder: Builder) -> Module {
+fn module_of(builder: &Builder) -> Module {
     let mut module = Module::default();
     builder.finish(&mut module);
     module
@@ -134,23 +127,15 @@ fn arithmetic_8_live_products_and_sums(bencher: Bencher<'_, '_>, level: Level) {
 
 #[divan::bench(args = levels())]
 fn sine(bencher: Bencher<'_, '_>, level: Level) {
-    measure(bencher, &repeated(Builder::sin), level, 1);
+    measure(bencher, &repeated(|x| x.sin()), level, 1);
 }
 
 #[divan::bench(args = levels())]
 fn exponential(bencher: Bencher<'_, '_>, level: Level) {
-    let limited = |b: &mut Builder, x| {
-        let limited = b.exp(x);
-        b.neg(limited)
-    };
-    measure(bencher, &repeated(limited), level, 1);
+    measure(bencher, &repeated(|x| -x.exp()), level, 1);
 }
 
 #[divan::bench(args = levels())]
 fn floor(bencher: Bencher<'_, '_>, level: Level) {
-    let moved = |b: &mut Builder, x| {
-        let floor = b.floor(x);
-        b.offset(floor, 0.7)
-    };
-    measure(bencher, &repeated(moved), level, 1);
+    measure(bencher, &repeated(|x| x.floor() + 0.7), level, 1);
 }

@@ -2,7 +2,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use mipless_codegen::ir::{Builder, FOOTPRINT, Interface, Module, Port, Program};
+use mipless_codegen::ir::{Builder, FOOTPRINT, Float, Interface, Module, Port, Program};
 use mipless_codegen::wgsl::{Options, emit};
 
 fn main() {
@@ -11,9 +11,9 @@ fn main() {
 
 /// A texture of `nodes` × 40 instructions that read near ones, and a name for each node.
 fn program(nodes: usize) -> Program {
-    let mut b = Builder::new("long", "A texture.");
-    let footprint = FOOTPRINT.map(|(name, ty)| b.param(name, ty));
-    let mut values = footprint[2..].to_vec();
+    let b = &Builder::new("long", "A texture.");
+    let footprint = FOOTPRINT.map(|(name, ty)| b.scalar_param(name, ty));
+    let mut values: Vec<Float<'_>> = footprint[2..].iter().map(|number| number.float()).collect();
     let mut state = 7_u32;
     for instruction in 0..nodes * 40 {
         let mut pick = || {
@@ -22,22 +22,18 @@ fn program(nodes: usize) -> Program {
         };
         let (x, y) = (pick(), pick());
         let value = match instruction % 5 {
-            0 => b.mul(x, y),
-            1 => b.scale(x, 0.3 + instruction as f32 * 0.01),
-            2 => b.max(x, y),
-            _ => b.add(x, y),
+            0 => x * y,
+            1 => x * (0.3 + instruction as f32 * 0.01),
+            2 => x.max(y),
+            _ => x + y,
         };
         if instruction % 40 == 0 {
             b.name(value, format!("node_{instruction}_mean"));
         }
         values.push(value);
     }
-    let recent = values[values.len() - 12..].to_vec();
-    let sum = recent
-        .into_iter()
-        .reduce(|x, y| b.add(x, y))
-        .expect("there are twelve");
-    b.result("value", sum);
+    let recent = &values[values.len() - 12..];
+    b.result("value", b.sum(recent.iter().copied()));
     let mut module = Module::default();
     b.finish(&mut module);
     let ty = mipless_graph::Type::Float;

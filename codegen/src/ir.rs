@@ -24,6 +24,7 @@
 //! identical in every run.
 
 mod build;
+mod builder;
 mod circle;
 mod expand;
 mod function;
@@ -37,9 +38,11 @@ pub(crate) mod random;
 mod shared;
 mod table;
 mod text;
+mod vector;
 mod verify;
 
-pub use build::Builder;
+pub use builder::{Bool, Builder, Choice, Expr, Float, Int, Kind, Operand, Scalar, Scalars, Uint};
+pub use circle::multiples;
 pub use function::{Body, Function, FunctionRef, Label, Parameter};
 pub(crate) use library::{Library, Shelves};
 pub(crate) use op::for_each_op;
@@ -47,6 +50,7 @@ pub use op::{Op, OpInfo};
 pub use shared::SharedFunction;
 pub use table::{Numbers, Table};
 pub use text::ParseError;
+pub use vector::{Sym2, Vec2, dot};
 pub use verify::{Violation, verify};
 
 /// The type of a scalar.

@@ -28,7 +28,7 @@ pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
 pub use upstream::{Over, Upstream, Widened};
 
-use crate::ir::{Builder, FunctionRef, Interface, Label, Library, Module, Port, Program, Value};
+use crate::ir::{Builder, Float, FunctionRef, Interface, Label, Library, Module, Port, Program};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use arguments::Arguments;
 use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Picture, Source, Type};
@@ -38,7 +38,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 /// The components of a node's output.
-pub type Bundle = Vec<Signal>;
+pub type Bundle<'b> = Vec<Signal<'b>>;
 
 /// A node type: its spec, which holds its statistics rule, and its lowering.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +46,7 @@ pub struct NodeDef {
     /// Everything but the lowering.
     pub spec: &'static NodeSpec,
     /// Builds the node's output: as many signals as its type has components.
-    pub lower: fn(&mut Lower<'_>, &Node) -> Bundle,
+    pub lower: for<'b> fn(&mut Lower<'_, 'b>, &Node) -> Bundle<'b>,
 }
 
 /// What to compile for.
@@ -229,27 +229,39 @@ impl<'a> Compiler<'a> {
             library: Library::default(),
         }
     }
+
+    /// A function that calls what all functions share.
+    fn builder(&self, name: impl Into<String>, doc: impl Into<String>) -> Builder {
+        Builder::new(name, doc).with_library(self.library.clone())
+    }
+}
+
+/// The components of the signals, by their means, as the function's results.
+fn value_results(b: &Builder, signals: &[Signal<'_>]) {
+    for (i, signal) in signals.iter().enumerate() {
+        b.result(format!("value_{i}"), signal.flat_mean());
+    }
 }
 
 /// The state of the lowering of one function of the graph; what nodes build through.
-pub struct Lower<'a> {
+pub struct Lower<'g, 'b> {
     /// The algebra and the builder.
-    pub algebra: Algebra,
-    module: &'a mut Module,
-    compiler: &'a Compiler<'a>,
-    arguments: Arguments,
+    pub algebra: Algebra<'b>,
+    module: &'g mut Module,
+    compiler: &'g Compiler<'g>,
+    arguments: Arguments<'b>,
     /// s: the standard deviation of the pixel filter, in pixels.
     filter_sd: f32,
-    bundles: Vec<Option<Bundle>>,
+    bundles: Vec<Option<Bundle<'b>>>,
     carriers: symbols::Carriers,
-    chains: Vec<Option<fusion::Chain>>,
-    pairs: Vec<Option<pair::Pair>>,
-    sums: Vec<Option<pair::Sum>>,
+    chains: Vec<Option<fusion::Chain<'b>>>,
+    pairs: Vec<Option<pair::Pair<'b>>>,
+    sums: Vec<Option<pair::Sum<'b>>>,
     parameter_scalars: Vec<usize>,
     /// The footprint of each source, in wavelengths of its dominant detail.
-    footprints: Vec<Value>,
+    footprints: Vec<Float<'b>>,
     /// The footprint of each source and pattern, in wavelengths that tell its slopes.
-    details: Vec<Value>,
+    details: Vec<Float<'b>>,
     /// Whether they are asked for.
     measures: bool,
     /// Which nodes nothing but their footprints is asked of.
@@ -262,18 +274,17 @@ pub struct Lower<'a> {
     nonlinear: bool,
 }
 
-impl<'a> Lower<'a> {
-    fn new(compiler: &'a Compiler<'a>, module: &'a mut Module, mut b: Builder, mode: Mode) -> Self {
-        let arguments = Arguments::declare(&mut b, compiler.graph);
-        let b = b.with_library(compiler.library.clone());
+impl<'g, 'b> Lower<'g, 'b> {
+    fn new(compiler: &'g Compiler<'g>, module: &'g mut Module, b: &'b Builder, mode: Mode) -> Self {
+        let arguments = Arguments::declare(b, compiler.graph);
         Self::with(compiler, module, Algebra::new(b, mode), arguments)
     }
 
     fn with(
-        compiler: &'a Compiler<'a>,
-        module: &'a mut Module,
-        algebra: Algebra,
-        arguments: Arguments,
+        compiler: &'g Compiler<'g>,
+        module: &'g mut Module,
+        algebra: Algebra<'b>,
+        arguments: Arguments<'b>,
     ) -> Self {
         let mut parameter_scalars = Vec::new();
         let mut next = 0;
@@ -384,10 +395,9 @@ impl<'a> Lower<'a> {
                     }
                 }
             }
-            let b = &mut self.algebra.b;
             let kept = kept.unwrap_or(Symbol(u32::MAX));
             self.carriers
-                .retire(b, &mut bundle, kept, self.compiler.facts.crossed[index]);
+                .retire(&mut bundle, kept, self.compiler.facts.crossed[index]);
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
@@ -402,14 +412,13 @@ impl<'a> Lower<'a> {
         }
     }
 
-    fn name(&mut self, node: &Node, bundle: &Bundle) {
+    fn name(&self, node: &Node, bundle: &Bundle<'b>) {
         let name: Arc<str> = identifier(&node.name).into();
         let letters: &[&str] = match (node.ty, bundle.len()) {
             (_, 1) => &[""],
             (Type::Color3 | Type::Color4, _) => &["_r", "_g", "_b", "_a"],
             _ => &["_x", "_y", "_z", "_w"],
         };
-        let b = &mut self.algebra.b;
         for (signal, letter) in bundle.iter().zip(letters) {
             let parts = [
                 (signal.mean, ""),
@@ -418,25 +427,25 @@ impl<'a> Lower<'a> {
                 (signal.private, "_rest"),
             ];
             for (value, part) in parts {
-                b.name(value, Label::of_parts(&name, [letter, part]));
+                let label = Label::of_parts(&name, [letter, part]);
+                self.algebra.b.name(value, label);
             }
         }
     }
 
     /// The means, then (if demanded) the variances of all outputs, with names.
-    fn results(&mut self) -> Vec<(String, Value)> {
+    fn results(&self) -> Vec<(String, Float<'b>)> {
         let graph = self.compiler.graph;
         let (mut means, mut variances) = (Vec::new(), Vec::new());
         for output in &graph.outputs {
             let bundle = self.bundles[output.node.index()]
-                .clone()
+                .as_ref()
                 .expect("outputs are live");
             for (i, signal) in bundle.iter().enumerate() {
                 let name = format!("{}_{i}", identifier(&output.name));
-                let b = &mut self.algebra.b;
-                means.push((name.clone(), signal.flat_mean(b)));
+                means.push((name.clone(), signal.flat_mean()));
                 if self.compiler.options.moments {
-                    variances.push((format!("{name}_variance"), signal.variance(b)));
+                    variances.push((format!("{name}_variance"), signal.variance()));
                 }
             }
         }

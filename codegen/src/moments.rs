@@ -37,7 +37,7 @@ mod tests;
 mod transfer;
 mod wave;
 
-use crate::ir::{Builder, Value};
+use crate::ir::{Builder, Float};
 
 pub(crate) use branch::Branch;
 pub use curve::Curve;
@@ -45,12 +45,13 @@ pub use map::Domain;
 pub(crate) use map::{Grid, Map, SIDE};
 pub use normal::Normal;
 pub use piecewise::{Bump, Knot, Piecewise, Shape};
+pub(crate) use signal::PARTS;
 pub use signal::{Covariance, Signal, Symbol};
 pub use smooth::{Exponential, Polynomial, RealPower, Reciprocal, Sine};
 pub use tabulated::Tabulated;
 pub(crate) use tabulated::{Sampled, Samples, sample_points};
 pub(crate) use tapped::{SIDES, Tapped};
-pub use transfer::{Gaussian, Moments, SharedTransfer, Transfer};
+pub use transfer::{Gaussian, Moments, Rebuild, SharedTransfer, Transfer};
 pub use wave::{Corner, LinearWave, SquareWave};
 
 /// Which moments signals carry.
@@ -82,9 +83,9 @@ impl Mode {
 
 /// The algebra at work in one function: where operations put their instructions and fresh symbols.
 #[derive(Debug)]
-pub struct Algebra {
+pub struct Algebra<'b> {
     /// The function under construction.
-    pub b: Builder,
+    pub b: &'b Builder,
     /// Which moments are carried.
     pub mode: Mode,
     /// Whether the signal under construction is read by several consumers, so that its fresh parts
@@ -99,9 +100,9 @@ pub struct Algebra {
     symbols: u32,
 }
 
-impl Algebra {
+impl<'b> Algebra<'b> {
     /// An algebra that builds into `b`.
-    pub fn new(b: Builder, mode: Mode) -> Self {
+    pub fn new(b: &'b Builder, mode: Mode) -> Self {
         Self {
             b,
             mode,
@@ -126,31 +127,29 @@ impl Algebra {
 
     /// Adds a fresh ε of this variance (at least 0): a symbol where the signal is shared, else a
     /// part of its private variance.
-    pub fn attach_fresh(&mut self, signal: &mut Signal, variance: Value) {
-        if self.b.is_zero(variance) {
+    pub fn attach_fresh(&mut self, signal: &mut Signal<'b>, variance: Float<'b>) {
+        if variance.is_zero() {
             return;
         }
         if self.shares {
             let symbol = self.fresh_symbol();
-            let coefficient = self.b.sqrt(variance);
-            signal.push_shared(symbol, coefficient);
+            signal.push_shared(symbol, variance.sqrt());
         } else {
-            signal.private = self.b.add(signal.private, variance);
+            signal.private += variance;
         }
     }
 
     /// The same signal, ready to be read more than once by what is built of it: its private variance
     /// becomes a symbol, and so does its second Hermite polynomial.
-    pub fn expose(&mut self, x: &Signal) -> Signal {
+    pub fn expose(&mut self, x: &Signal<'b>) -> Signal<'b> {
         let mut out = x.clone();
-        if !self.mode.spreads() || x.is_certain(&self.b) {
+        if !self.mode.spreads() || x.is_certain() {
             return out;
         }
-        if !self.b.is_zero(x.private) {
+        if !x.private.is_zero() {
             let symbol = self.fresh_symbol();
-            let coefficient = self.b.sqrt(x.private);
-            out.push_shared(symbol, coefficient);
-            out.private = self.b.f32(0.0);
+            out.push_shared(symbol, x.private.sqrt());
+            out.private = self.b.float(0.0);
         }
         if out.hermite.is_none() {
             out.hermite = Some(self.fresh_symbol());
@@ -166,9 +165,7 @@ impl Algebra {
 }
 
 /// σ = √(v + 1e-12) and 1/σ: no rule divides by 0, and a σ of 1e-6 blurs nothing that can be seen.
-pub(crate) fn spread(b: &mut Builder, variance: Value) -> (Value, Value) {
-    let raised = b.offset(variance, 1e-12);
-    let sd = b.sqrt(raised);
-    let one = b.f32(1.0);
-    (sd, b.div(one, sd))
+pub(crate) fn spread(variance: Float<'_>) -> (Float<'_>, Float<'_>) {
+    let sd = (variance + 1e-12).sqrt();
+    (sd, 1.0 / sd)
 }

@@ -1,39 +1,43 @@
 //! Combinations of signals.
 
-pub(crate) mod blend;
-pub(crate) mod condition;
+mod blend;
+mod comparison;
+mod extremum;
+mod smooth;
+mod sum;
 pub(crate) mod vector;
+mod vectorproduct;
 
 room! {
-    add,
+    sum::add,
     atan2,
-    burn,
-    crossproduct,
-    darken,
-    difference,
-    distance,
+    blend::burn,
+    vectorproduct::crossproduct,
+    blend::darken,
+    blend::difference,
+    vector::distance,
     divide,
-    dodge,
-    dotproduct,
-    hardlight,
-    ifequal,
-    ifgreater,
-    ifgreatereq,
-    lighten,
-    linearlight,
-    magnitude,
-    max,
-    min,
-    minus,
+    blend::dodge,
+    vectorproduct::dotproduct,
+    blend::hardlight,
+    comparison::ifequal,
+    comparison::ifgreater,
+    comparison::ifgreatereq,
+    blend::lighten,
+    blend::linearlight,
+    vector::magnitude,
+    extremum::max,
+    extremum::min,
+    blend::minus,
     mix,
     multiply,
     normalize,
-    overlay,
-    plus,
-    screen,
-    smoothmax,
-    smoothmin,
-    softlight,
-    subtract,
+    blend::overlay,
+    blend::plus,
+    blend::screen,
+    smooth::smoothmax,
+    smooth::smoothmin,
+    blend::softlight,
+    sum::subtract,
     switch,
 }

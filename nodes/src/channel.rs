@@ -1,18 +1,19 @@
 //! Components of vectors: taken apart, put together, and what the slopes of a height make.
 
-pub(crate) mod separate;
+mod combine;
+mod separate;
 
 room! {
     blur,
-    combine2,
-    combine3,
-    combine4,
+    combine::combine2,
+    combine::combine3,
+    combine::combine4,
     convert,
     dot,
     extract,
     heighttonormal,
     normalmap,
-    separate2,
-    separate3,
-    separate4,
+    separate::separate2,
+    separate::separate3,
+    separate::separate4,
 }

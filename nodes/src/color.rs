@@ -1,6 +1,7 @@
 //! Colours: maps from numbers to them, their corrections, layers with alpha.
 
-pub(crate) mod composite;
+mod alpha;
+mod composite;
 pub(crate) mod hsv;
 
 room! {
@@ -13,13 +14,13 @@ room! {
     hsvadjust,
     hsvtorgb,
     luminance,
-    mask,
-    matte,
-    out,
-    over,
-    premult,
-    r#in,
+    composite::mask,
+    composite::matte,
+    composite::out,
+    composite::over,
+    alpha::premult,
+    composite::r#in,
     rgbtohsv,
     saturate,
-    unpremult,
+    alpha::unpremult,
 }

@@ -1,5 +1,7 @@
 //! Maps of coordinates.
 
+pub(crate) mod place;
+
 room! {
     kaleidoscope,
     mirror,

@@ -1,21 +1,33 @@
-//! The catalogue of nodes: one file each, named as the node type, in the room of its category, beside
-//! the kernels that it shares with its neighbours.
+//! The catalogue of nodes, in the rooms of their categories, beside the kernels that they share with
+//! their neighbours: one file each, named as the node type, or a row of the file of its family.
 //!
 //! A node is its [`NodeSpec`](mipless_graph::NodeSpec) as data, its statistics rule, and a lowering
 //! that builds IR through the moment algebra. Nothing else knows a node by name.
 
-/// The nodes of a room: a line declares the module of a node and lists its definition.
+/// The nodes of a room, a line each: `clamp,` declares the module of a node and lists its
+/// definition; `rounding::floor,` lists a row of a family, whose module the room declares itself.
 ///
 /// `cargo fmt` does not look into a macro for modules, so that the files of nodes are named to
 /// `rustfmt` one by one: see `.ci/run`.
 macro_rules! room {
-    ($($node:ident,)*) => {
-        $(pub(crate) mod $node;)*
+    (@module $node:ident) => { pub(crate) mod $node; };
+    (@module $family:ident::$node:ident) => {};
+    (@definition $node:ident) => { $node::DEF };
+    (@definition $family:ident::$node:ident) => { $family::$node() };
+    ($($file:ident $(::$row:ident)?,)*) => {
+        $(room! { @module $file $(::$row)? })*
 
         /// The definitions of the room's nodes, in the order of the reference pages.
-        pub(crate) const NODES: &[mipless_codegen::NodeDef] = &[$($node::DEF),*];
+        pub(crate) const NODES: &[mipless_codegen::NodeDef] =
+            &[$(room! { @definition $file $(::$row)? }),*];
     };
 }
+
+// Texts of reference pages.
+#[macro_use]
+mod example;
+#[macro_use]
+mod literature;
 
 // The rooms.
 mod arithmetic;
@@ -30,6 +42,7 @@ mod transfer;
 // What several rooms share.
 mod componentwise;
 mod picture;
+mod port;
 
 mod page;
 

@@ -9,7 +9,6 @@ pub(crate) mod hash;
 pub(crate) mod kernel;
 pub(crate) mod lattice;
 pub(crate) mod layers;
-mod octave;
 pub(crate) mod octaves;
 pub(crate) mod period;
 pub(crate) mod perlin;

@@ -3,24 +3,30 @@
 pub(crate) mod angle;
 mod bits;
 pub(crate) mod bond;
+pub(crate) mod disc;
 pub(crate) mod figure;
 pub(crate) mod harmonics;
 pub(crate) mod measure;
 pub(crate) mod pulse;
+mod ramp;
 pub(crate) mod random;
 pub(crate) mod region;
 pub(crate) mod sawtooth;
 pub(crate) mod separable;
 pub(crate) mod slope;
 pub(crate) mod soft;
+mod split;
 pub(crate) mod taps;
 #[cfg(test)]
 mod tests;
+mod tiles;
 pub(crate) mod tiling;
 pub(crate) mod touch;
 pub(crate) mod triangle;
+pub(crate) mod unless;
 pub(crate) mod wall;
 pub(crate) mod wanted;
+mod waves;
 
 room! {
     brick,
@@ -35,14 +41,14 @@ room! {
     image,
     line,
     ramp4,
-    ramplr,
-    ramptb,
+    ramp::ramplr,
+    ramp::ramptb,
     shape,
-    splitlr,
-    splittb,
+    split::splitlr,
+    split::splittb,
     stripes,
-    tiledcircles,
-    tiledcloverleafs,
-    tiledhexagons,
+    tiles::tiledcircles,
+    tiles::tiledcloverleafs,
+    tiles::tiledhexagons,
     wave,
 }

@@ -1,21 +1,25 @@
 //! Functions of one signal, and of what shapes them.
 
 pub(crate) mod arc;
+mod rounding;
+mod schlick;
+mod sines;
+mod waves;
 
 room! {
     absval,
-    acos,
-    asin,
-    atan,
-    bias,
-    ceil,
+    arc::acos,
+    arc::asin,
+    arc::atan,
+    schlick::bias,
+    rounding::ceil,
     clamp,
     contrast,
-    cos,
+    sines::cos,
     exp,
-    floor,
-    fract,
-    gain,
+    rounding::floor,
+    waves::fract,
+    schlick::gain,
     invert,
     levels,
     ln,
@@ -23,13 +27,13 @@ room! {
     power,
     quantize,
     range,
-    round,
+    rounding::round,
     sign,
-    sin,
+    sines::sin,
     smoothstep,
     sqrt,
     squarewave,
     step,
     tan,
-    trianglewave,
+    waves::trianglewave,
 }

@@ -203,17 +203,15 @@ mod tests {
 
     /// The position times a parameter.
     fn position() -> Program {
-        let mut builder = Builder::new("position", "The position times a parameter.");
-        let footprint = FOOTPRINT.map(|(name, ty)| builder.param(name, ty));
-        let scale = builder.param_f32("scale");
+        let b = &Builder::new("position", "The position times a parameter.");
+        let footprint = FOOTPRINT.map(|(name, ty)| b.scalar_param(name, ty));
+        let scale = b.float_param("scale");
         for axis in 0..2 {
-            let cell = builder.float_i(footprint[axis]);
-            let at = builder.add(cell, footprint[axis + 2]);
-            let scaled = builder.mul(at, scale);
-            builder.result(["x", "y"][axis], scaled);
+            let (cell, uv) = (footprint[axis].int(), footprint[axis + 2].float());
+            b.result(["x", "y"][axis], (cell.to_float() + uv) * scale);
         }
         let mut module = Module::default();
-        builder.finish(&mut module);
+        b.finish(&mut module);
         let port = |name: &str, ty, default| Port {
             name: name.into(),
             ty,

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use libtest_mimic::{Arguments, Trial};
-use mipless_codegen::ir::{Builder, FOOTPRINT, Interface, Module, Port, Program, Type};
+use mipless_codegen::ir::{Builder, FOOTPRINT, Interface, Module, Port, Program, dot};
 use mipless_codegen::wgsl::{Entry, Options, emit};
 use mipless_runtime::cpu::Renderer;
 use mipless_runtime::gpu::{AdapterChoice, Gpu, GpuError};
@@ -38,46 +38,30 @@ fn program() -> Program {
     let mut module = Module::default();
     let table = module.table("steps", vec![0.25, -0.5, 1.0, 0.125, 0.75]);
 
-    let mut body = Builder::new("turn", "One turn.");
-    let index = body.param("index", Type::U32);
-    let (x, y) = (body.param_f32("x"), body.param_f32("y"));
-    let angle = body.param_f32("angle");
-    let turn = body.float_u(index);
-    let angle = body.mul(angle, turn);
-    let (sin, cos) = (body.sin(angle), body.cos(angle));
-    let minus = body.neg(sin);
-    let (a, b) = (
-        body.dot(&[cos, minus], &[x, y]),
-        body.dot(&[sin, cos], &[x, y]),
-    );
-    body.result("x", a);
-    body.result("y", b);
-    let body = body.finish(&mut module);
+    let b = &Builder::new("turn", "One turn.");
+    let index = b.uint_param("index");
+    let [x, y, angle] = ["x", "y", "angle"].map(|name| b.float_param(name));
+    let angle = angle * index.to_float();
+    let (sin, cos) = (angle.sin(), angle.cos());
+    b.result("x", cos * x - sin * y);
+    b.result("y", sin * x + cos * y);
+    let turn = b.finish(&mut module);
 
-    let mut b = Builder::new("waves", "Waves.");
-    let [cell_x, cell_y, u, v, du_dx, dv_dx, du_dy, dv_dy] =
-        FOOTPRINT.map(|(name, ty)| b.param(name, ty));
-    let frequency = b.param_f32("frequency");
-    let count = b.u32(5);
-    let turned = b.fold(&body, count, &[u, v], &[frequency]);
-    let area = b.dot(&[du_dx, dv_dx, du_dy, dv_dy], &[du_dx, dv_dx, du_dy, dv_dy]);
-    let one = b.f32(1.0);
-    let damped = b.add(area, one);
-    let damped = b.div(turned[0], damped);
-    let (x, y) = (b.cast_u(cell_x), b.cast_u(cell_y));
-    let multiplier = b.u32(0x9e37_79b1);
-    let hash = b.mul_u(x, multiplier);
-    let hash = b.xor_u(hash, y);
-    let mask = b.u32(7);
-    let hash = b.and_u(hash, mask);
-    let step = b.load(table, hash);
-    b.result("height", damped);
-    b.result("step_x", step);
-    b.result("step_y", turned[1]);
-    let square = b.square(damped);
-    b.result("height_variance", square);
+    let b = &Builder::new("waves", "Waves.");
+    let [cell_x, cell_y, numbers @ ..] = FOOTPRINT.map(|(name, ty)| b.scalar_param(name, ty));
+    let [u, v, change @ ..] = numbers.map(|number| number.float());
+    let frequency = b.float_param("frequency");
+    let [x, y] = b.fold(&turn, b.uint(5), [u, v], frequency);
+    let area = dot(change, change);
+    let height = x / (area + 1.0);
+    let [cell_x, cell_y] = [cell_x, cell_y].map(|cell| cell.int().to_uint());
+    let hash = ((cell_x * 0x9e37_79b1) ^ cell_y) & 7;
+    b.result("height", height);
+    b.result("step_x", b.load(table, hash));
+    b.result("step_y", y);
+    b.result("height_variance", height.square());
     b.result("step_x_variance", area);
-    b.result("step_y_variance", square);
+    b.result("step_y_variance", height.square());
     b.finish(&mut module);
     let port = |name: &str, ty, default: &[f32]| Port {
         name: name.into(),

@@ -7,7 +7,7 @@
 
 use mipless::{Footprint, Method, Options, PixelFilter};
 use mipless_codegen::cpu::{Evaluator, Scratch};
-use mipless_codegen::ir::{Builder, Program, Value};
+use mipless_codegen::ir::{Float, Program};
 use mipless_codegen::moments::Domain;
 use mipless_codegen::{Bundle, Lower, NodeDef, compile};
 use mipless_graph::{
@@ -59,7 +59,7 @@ static WAVES: NodeSpec = NodeSpec {
     example: "",
 };
 
-fn waves(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn waves<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (x, y) = (lower.signal(node, "in1"), lower.signal(node, "in2"));
     let seed = lower.integer(node, "seed") as u64;
     let domain = Domain {
@@ -72,25 +72,18 @@ fn waves(lower: &mut Lower<'_>, node: &Node) -> Bundle {
         [&x, &y],
         domain,
         &[[0.0, 1.0]; 3],
-        move |b, _, place| (0..3).map(|i| channel(b, place, 3 * seed + i)).collect(),
+        move |_, _, place| (0..3).map(|i| channel(place, 3 * seed + i)).collect(),
     )
 }
 
 /// ½ plus eight waves of up to five periods, a fourteenth high each: in [0, 1] but for rounding.
-fn channel(b: &mut Builder, place: [Value; 2], seed: u64) -> Value {
+fn channel([x, y]: [Float<'_>; 2], seed: u64) -> Float<'_> {
     let mut random = Random(seed.wrapping_mul(77) + 5);
-    let mut sum = b.f32(0.5);
-    for _ in 0..8 {
+    (0..8).fold(x.literal(0.5), |sum, _| {
         let cycles = [0, 1].map(|_| ((random.next() * 11.0).floor() - 5.0) as f32);
-        let (p, q) = (b.f32(cycles[0]), b.f32(cycles[1]));
-        let turns = b.dot(&place, &[p, q]);
-        let turns = b.offset(turns, random.next() as f32);
-        let angle = b.scale(turns, std::f32::consts::TAU);
-        let wave = b.sin(angle);
-        let wave = b.scale(wave, 0.0625);
-        sum = b.add(sum, wave);
-    }
-    sum
+        let turns = x * cycles[0] + y * cycles[1] + random.next() as f32;
+        sum + (turns * std::f32::consts::TAU).sin() * 0.0625
+    })
 }
 
 /// A small generator (Steele, Lea & Flood 2014).

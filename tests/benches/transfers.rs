@@ -88,7 +88,7 @@ static TABLE: NodeSpec = NodeSpec {
     example: "",
 };
 
-fn table(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn table<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let x = lower.signal(node, "in");
     let case = lower.integer(node, "case") as usize;
     let name = format!("case_{case}");

@@ -119,6 +119,43 @@ fn nodes_hold_no_shader_text() {
     }
 }
 
+/// Names of ops as a builder's methods, which `ir` alone may call: everywhere else they are operators
+/// and methods of expressions.
+#[test]
+fn formulas_are_written_with_operators() {
+    let folders = ["nodes/src", "codegen/src/moments", "codegen/src/lower"];
+    let methods = [
+        "add", "sub", "mul", "div", "neg", "scale", "offset", "square", "sqrt", "exp", "min",
+        "max", "lt", "le", "and", "or", "not", "select", "add_i", "mul_u", "f32", "i32", "u32",
+        "dot", "clamp",
+    ];
+    for path in folders
+        .iter()
+        .flat_map(|folder| files(&root().join(folder), "rs"))
+    {
+        for (line, text) in (1..).zip(read(&path).lines()) {
+            let words: Vec<&str> =
+                (text.split(|c: char| !(c.is_alphanumeric() || "_.".contains(c)))).collect();
+            for builder in [
+                "b",
+                "self.b",
+                "lower.b",
+                "builder",
+                "lower.builder",
+                "algebra.b",
+            ] {
+                let old = |word: &&&str| {
+                    (word.strip_prefix(builder))
+                        .and_then(|rest| rest.strip_prefix('.'))
+                        .is_some_and(|method| methods.contains(&method))
+                };
+                let found = words.iter().find(old);
+                assert!(found.is_none(), "{}:{line}: {found:?}", path.display());
+            }
+        }
+    }
+}
+
 #[test]
 fn codegen_names_no_node() {
     for path in files(&root().join("codegen/src"), "rs") {
@@ -134,16 +171,38 @@ fn codegen_names_no_node() {
     }
 }
 
+/// The file of a node, by the line of its room that lists it: `clamp,` is a file of its own, and
+/// `rounding::floor,` is a row of a family's file.
+fn listed(room: &str, node: &str) -> Option<(String, String)> {
+    let lines = read(&root().join(format!("nodes/src/{room}.rs")));
+    // A name that is a keyword is written raw.
+    let names = [node.to_owned(), format!("r#{node}")];
+    lines.lines().find_map(|line| {
+        let line = line.strip_prefix("    ")?.strip_suffix(',')?;
+        let (family, name) = line.split_once("::").unwrap_or((node, line));
+        let file = format!("nodes/src/{room}/{family}.rs");
+        names
+            .contains(&name.to_owned())
+            .then(|| (file, line.to_owned()))
+    })
+}
+
 #[test]
-fn a_node_stands_in_the_room_of_its_category_in_the_file_of_its_name() {
+fn a_node_stands_in_the_room_of_its_category_in_its_file_or_a_row_of_its_family() {
     for def in mipless::catalogue() {
         let name = def.spec.name;
         let room = def.spec.category.name().to_lowercase();
-        let text = read(&root().join(format!("nodes/src/{room}/{name}.rs")));
-        assert!(
-            text.contains(&format!("name: \"{name}\"")),
-            "{room}/{name}.rs holds another node"
-        );
+        let (file, line) =
+            listed(&room, name).unwrap_or_else(|| panic!("{room} does not list {name}"));
+        let text = read(&root().join(&file));
+        // A file holds the name as text, a row begins with it.
+        let said = match line.split_once("::") {
+            None => text.contains(&format!("name: \"{name}\"")),
+            Some((_, row)) => (text.lines())
+                .filter_map(|line| line.trim().strip_prefix(row))
+                .any(|rest| rest.starts_with([' ', ':'])),
+        };
+        assert!(said, "{file} holds another node");
         let example = format!("\"type\": \"{name}\"");
         assert!(
             def.spec.example.contains(&example),

@@ -1,7 +1,9 @@
 //! The evaluator against an interpreter of single values, written from the IR's documentation.
 
 use super::*;
-use crate::ir::{Builder, FunctionId, FunctionRef, Inst, Interface, Op, Value, for_each_op};
+use crate::ir::{
+    Builder, FunctionId, FunctionRef, Inst, Interface, Op, Scalar, Value, for_each_op,
+};
 use proptest::prelude::*;
 
 #[derive(Clone, Copy, Debug)]
@@ -242,19 +244,21 @@ fn sample(ty: Type, i: u32) -> u32 {
     }
 }
 
+/// A parameter of each type.
+fn parameters<'b>(b: &'b Builder, types: &[Type]) -> Vec<Scalar<'b>> {
+    let parameters = types.iter().enumerate();
+    parameters
+        .map(|(i, &ty)| b.scalar_param(format!("p{i}"), ty))
+        .collect()
+}
+
 #[test]
 fn every_op_is_the_interpreters_at_every_level() {
     for &op in Op::ALL {
         let mut module = Module::default();
-        let mut b = Builder::new("op", "One op.");
+        let b = &Builder::new("op", "One op.");
         let types = op.info().operands;
-        let operands: Vec<Value> = types
-            .iter()
-            .enumerate()
-            .map(|(i, &ty)| b.param(format!("p{i}"), ty))
-            .collect();
-        let value = b.op(op, &operands);
-        b.result("out", value);
+        b.result("out", b.dynamic(op, &parameters(b, types)));
         b.finish(&mut module);
         let column = |(i, &ty): (usize, &Type)| {
             let stride = [1, 7, 11][i];
@@ -274,18 +278,13 @@ fn every_op_is_the_interpreters_at_every_level() {
 
 /// Sums `i · scale + step` for i below each lane's count, and counts the turns in a word.
 fn inner_sum(module: &mut Module) -> FunctionRef {
-    let mut b = Builder::new("inner", "Adds a multiple of the turn.");
-    let index = b.param("index", Type::U32);
-    let sum = b.param_f32("sum");
-    let turns = b.param("turns", Type::U32);
-    let scale = b.param_f32("scale");
-    let i = b.float_u(index);
-    let product = b.mul(i, scale);
-    let next = b.add(sum, product);
-    let one = b.u32(1);
-    let turns = b.add_u(turns, one);
-    b.result("sum", next);
-    b.result("turns", turns);
+    let b = &Builder::new("inner", "Adds a multiple of the turn.");
+    let index = b.uint_param("index");
+    let sum = b.float_param("sum");
+    let turns = b.uint_param("turns");
+    let scale = b.float_param("scale");
+    b.result("sum", sum + index.to_float() * scale);
+    b.result("turns", turns + 1);
     b.finish(module)
 }
 
@@ -293,31 +292,29 @@ fn inner_sum(module: &mut Module) -> FunctionRef {
 /// turns of the inner fold, which wraps: they must not be heard.
 fn nested(module: &mut Module) {
     let inner = inner_sum(module);
-    let mut b = Builder::new("outer", "Runs the inner sum.");
-    let index = b.param("index", Type::U32);
-    let sum = b.param_f32("sum");
-    let other = b.param_f32("other");
-    let turns = b.param("turns", Type::U32);
-    let size = b.param("size", Type::U32);
-    let scale = b.param_f32("scale");
-    let count = b.sub_u(size, index);
-    let state = b.fold(&inner, count, &[other, turns], &[scale]);
+    let b = &Builder::new("outer", "Runs the inner sum.");
+    let index = b.uint_param("index");
+    let [sum, other] = ["sum", "other"].map(|name| b.float_param(name));
+    let [turns, size] = ["turns", "size"].map(|name| b.uint_param(name));
+    let scale = b.float_param("scale");
+    let (next, turns) = b.fold(&inner, size - index, (other, turns), scale);
     // The second state becomes what the first was before the turn.
-    b.result("sum", state[0]);
+    b.result("sum", next);
     b.result("other", sum);
-    b.result("turns", state[1]);
+    b.result("turns", turns);
     let outer = b.finish(module);
 
-    let mut b = Builder::new("entry", "Nested folds.");
-    let size = b.param("size", Type::U32);
-    let scale = b.param_f32("scale");
-    let (zero, none) = (b.f32(0.0), b.u32(0));
-    let state = b.fold(&outer, size, &[scale, zero, none], &[size, scale]);
-    let three = b.u32(3);
-    let again = b.fold(&inner, three, &[state[0], state[2]], &[state[1]]);
-    for (i, &value) in state.iter().chain(&again).enumerate() {
-        b.result(format!("r{i}"), value);
-    }
+    let b = &Builder::new("entry", "Nested folds.");
+    let size = b.uint_param("size");
+    let scale = b.float_param("scale");
+    let start = (scale, b.float(0.0), b.uint(0));
+    let (sum, other, turns) = b.fold(&outer, size, start, (size, scale));
+    let (again, more) = b.fold(&inner, b.uint(3), (sum, turns), other);
+    b.result("r0", sum);
+    b.result("r1", other);
+    b.result("r2", turns);
+    b.result("r3", again);
+    b.result("r4", more);
     b.finish(module);
 }
 
@@ -379,11 +376,10 @@ fn bits_depend_neither_on_the_cut_nor_on_what_is_uniform() {
 #[test]
 fn a_program_reads_its_footprint_and_parameters_in_order() {
     let mut module = Module::default();
-    let mut b = Builder::new("entry", "Returns its parameters.");
+    let b = &Builder::new("entry", "Returns its parameters.");
     let parameters = [("a", Type::F32), ("b", Type::I32), ("c", Type::Bool)];
     for (name, ty) in FOOTPRINT.into_iter().chain(parameters) {
-        let value = b.param(name, ty);
-        b.result(name, value);
+        b.result(name, b.scalar_param(name, ty));
     }
     b.finish(&mut module);
     let interface = Interface {
@@ -419,51 +415,46 @@ fn threads_share_an_evaluator() {
     shared::<Evaluator<f64>>();
 }
 
+/// The values of a type.
+fn of_type<'b>(values: &[Scalar<'b>], ty: Type) -> Vec<Scalar<'b>> {
+    values.iter().copied().filter(|v| v.ty() == ty).collect()
+}
+
 /// Adds random ops, loads and calls to a function, on values of all types that it has.
-fn grow(b: &mut Builder, values: &mut Vec<Value>, callees: &[Callee], genes: &[[u8; 4]]) {
+fn grow<'b>(b: &'b Builder, values: &mut Vec<Scalar<'b>>, callees: &[Callee], genes: &[[u8; 4]]) {
     for &[what, x, y, z] in genes {
-        let pick = |b: &Builder, ty: Type, gene: u8| {
-            let of_type: Vec<Value> = values.iter().copied().filter(|&v| b.ty(v) == ty).collect();
-            of_type[usize::from(gene) % of_type.len()]
+        let pick = |ty: Type, gene: u8| {
+            let fitting = of_type(values, ty);
+            fitting[usize::from(gene) % fitting.len()]
         };
         let rows = Op::ALL.len();
         let choice = usize::from(what) % (rows + 12);
         if let Some(&op) = Op::ALL.get(choice) {
-            let types = op.info().operands;
-            let operands: Vec<Value> = types
-                .iter()
-                .zip([x, y, z])
-                .map(|(&ty, gene)| pick(b, ty, gene))
-                .collect();
-            values.push(b.op(op, &operands));
+            let types = op.info().operands.iter().zip([x, y, z]);
+            let operands: Vec<Scalar<'_>> = types.map(|(&ty, gene)| pick(ty, gene)).collect();
+            values.push(b.dynamic(op, &operands));
         } else if choice < rows + 6 {
-            let [p, q, r] = [x, y, z].map(|gene| pick(b, Type::F32, gene));
-            let product = b.mul(p, q);
-            values.push(if what.is_multiple_of(2) {
-                b.sub(r, product)
+            let [p, q, r] = [x, y, z].map(|gene| pick(Type::F32, gene).float());
+            let difference = if what.is_multiple_of(2) {
+                r - p * q
             } else {
-                b.sub(product, r)
-            });
+                p * q - r
+            };
+            values.push(difference.into());
         } else if choice < rows + 8 || callees.is_empty() {
-            let index = pick(b, Type::U32, x);
-            values.push(b.load(0, index));
+            values.push(b.load(0, pick(Type::U32, x).uint()).into());
         } else {
             let callee = &callees[usize::from(x) % callees.len()];
             let gene = |i: usize| y.wrapping_mul(31).wrapping_add(z.wrapping_mul(i as u8));
-            let arguments: Vec<Value> = callee
-                .types
-                .iter()
-                .enumerate()
-                .map(|(i, &ty)| pick(b, ty, gene(i)))
-                .collect();
-            if choice < rows + 10 {
-                values.extend(b.call(&callee.function, &arguments));
+            let types = callee.types.iter().enumerate();
+            let arguments: Vec<Scalar<'_>> = types.map(|(i, &ty)| pick(ty, gene(i))).collect();
+            values.extend(if choice < rows + 10 {
+                b.call_any(&callee.function, arguments)
             } else {
-                let (low, four) = (pick(b, Type::U32, z), b.u32(3));
-                let count = b.and_u(low, four);
+                let count = pick(Type::U32, z).uint() & 3;
                 let (state, captures) = arguments[1..].split_at(callee.function.results.len());
-                values.extend(b.fold(&callee.function, count, state, captures));
-            }
+                b.fold(&callee.function, count, state.to_vec(), captures)
+            });
         }
     }
 }
@@ -489,19 +480,13 @@ fn generate(functions: &[Vec<[u8; 4]>]) -> Module {
     module.table("numbers", vec![0.5, -2.0, 3.25, 7.0]);
     let mut callees: Vec<Callee> = Vec::new();
     for (f, genes) in functions.iter().enumerate() {
-        let mut b = Builder::new(format!("f{f}"), "Generated.");
-        let mut values: Vec<Value> = SHAPE
-            .iter()
-            .enumerate()
-            .map(|(i, &ty)| b.param(format!("p{i}"), ty))
-            .collect();
-        for x in [1.0, -0.75] {
-            values.push(b.f32(x));
-        }
-        values.push(b.u32(0x9e37_79b9));
-        grow(&mut b, &mut values, &callees, genes);
+        let b = &Builder::new(format!("f{f}"), "Generated.");
+        let mut values = parameters(b, &SHAPE);
+        values.extend([1.0, -0.75].map(|x| Scalar::from(b.float(x))));
+        values.push(b.uint(0x9e37_79b9).into());
+        grow(b, &mut values, &callees, genes);
         for (i, &ty) in SHAPE[1..5].iter().enumerate() {
-            let of_type: Vec<Value> = values.iter().copied().filter(|&v| b.ty(v) == ty).collect();
+            let fitting = of_type(&values, ty);
             // Mostly late values; sometimes parameters and constants.
             let gene = genes.get(i).map_or(0, |g| usize::from(g[3]));
             let back = if gene.is_multiple_of(4) {
@@ -509,10 +494,8 @@ fn generate(functions: &[Vec<[u8; 4]>]) -> Module {
             } else {
                 gene % 3
             };
-            b.result(
-                format!("r{i}"),
-                of_type[of_type.len() - 1 - back % of_type.len()],
-            );
+            let last = fitting.len() - 1;
+            b.result(format!("r{i}"), fitting[last - back % fitting.len()]);
         }
         let function = b.finish(&mut module);
         callees.push(Callee {

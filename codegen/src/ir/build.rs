@@ -12,8 +12,8 @@
 
 use super::prune::without_dead_code;
 use super::{
-    Body, Constant, Function, FunctionId, FunctionRef, Inst, Label, Library, Module, Numbers, Op,
-    Parameter, Table, Type, Value, op::fold_constants,
+    Body, Constant, Function, FunctionId, FunctionRef, Inst, Label, Module, Numbers, Op, Parameter,
+    Table, Type, Value, op::fold_constants,
 };
 use hashbrown::{HashTable, hash_table::Entry};
 use rustc_hash::FxBuildHasher;
@@ -29,18 +29,18 @@ struct Known {
 
 /// A function under construction.
 #[derive(Debug)]
-pub struct Builder {
+pub(super) struct Core {
     name: String,
     function: Body,
     /// The definitions by their hash: equal instructions are found, not stored twice.
     cons: HashTable<Known>,
-    /// The functions that the module's functions share, where it has any.
-    pub(super) library: Option<Library>,
+    /// Constants that were asked for, by their bits: found without a look at the table.
+    recent: [Option<(Constant, Value)>; 32],
 }
 
-impl Builder {
+impl Core {
     /// An empty function; `doc` is one sentence.
-    pub fn new(name: impl Into<String>, doc: impl Into<String>) -> Self {
+    pub(super) fn new(name: impl Into<String>, doc: impl Into<String>) -> Self {
         Self {
             name: name.into(),
             function: Body {
@@ -48,12 +48,12 @@ impl Builder {
                 ..Body::default()
             },
             cons: HashTable::new(),
-            library: None,
+            recent: [None; 32],
         }
     }
 
     /// Room for so many instructions.
-    pub(crate) fn with_capacity(mut self, instructions: usize) -> Self {
+    pub(super) fn with_capacity(mut self, instructions: usize) -> Self {
         self.function.insts.reserve(instructions);
         self.function.types.reserve(instructions);
         self.function.names.reserve(instructions / 4);
@@ -61,24 +61,8 @@ impl Builder {
         self
     }
 
-    /// Shared rules become calls of functions of `library` from here on.
-    pub(crate) fn with_library(mut self, library: Library) -> Self {
-        self.library = Some(library);
-        self
-    }
-
-    /// Whether shared rules are calls.
-    pub(crate) fn has_library(&self) -> bool {
-        self.library.is_some()
-    }
-
-    /// The functions that the module's functions share.
-    pub(crate) fn library(&self) -> Option<&Library> {
-        self.library.as_ref()
-    }
-
     /// A further parameter.
-    pub fn param(&mut self, name: impl Into<String>, ty: Type) -> Value {
+    pub(super) fn param(&mut self, name: impl Into<String>, ty: Type) -> Value {
         let index = self.function.params.len() as u32;
         self.function.params.push(Parameter {
             name: name.into(),
@@ -87,13 +71,8 @@ impl Builder {
         self.push(Inst::Param(index), ty)
     }
 
-    /// A further f32 parameter.
-    pub fn param_f32(&mut self, name: impl Into<String>) -> Value {
-        self.param(name, Type::F32)
-    }
-
     /// Gives a value a readable name, unless it is a constant or a parameter or has a name.
-    pub fn name(&mut self, value: Value, name: impl Into<Label>) {
+    pub(super) fn name(&mut self, value: Value, name: impl Into<Label>) {
         if !matches!(self.function.inst(value), Inst::Const(_) | Inst::Param(_)) {
             self.function
                 .names
@@ -103,12 +82,12 @@ impl Builder {
     }
 
     /// A further result.
-    pub fn result(&mut self, name: impl Into<String>, value: Value) {
+    pub(super) fn result(&mut self, name: impl Into<String>, value: Value) {
         self.function.results.push((name.into(), value));
     }
 
     /// Adds the function to `module`, without the instructions that no result needs.
-    pub fn finish(self, module: &mut Module) -> FunctionRef {
+    pub(super) fn finish(self, module: &mut Module) -> FunctionRef {
         let function = self.finished();
         let results = function.result_types();
         module.functions.push(function);
@@ -124,23 +103,18 @@ impl Builder {
     }
 
     /// The type of a value.
-    pub fn ty(&self, value: Value) -> Type {
+    pub(super) fn ty(&self, value: Value) -> Type {
         self.function.ty(value)
     }
 
     /// The f32 constant that a value is, if it is one.
-    pub fn as_constant(&self, value: Value) -> Option<f32> {
+    pub(super) fn as_constant(&self, value: Value) -> Option<f32> {
         self.function.constant(value).and_then(Constant::as_f32)
     }
 
     /// The constant that a value is, if it is one.
     pub(super) fn constant_of(&self, value: Value) -> Option<Constant> {
         self.function.constant(value)
-    }
-
-    /// Whether a value is the f32 constant 0.
-    pub fn is_zero(&self, value: Value) -> bool {
-        self.as_constant(value) == Some(0.0)
     }
 
     fn push(&mut self, inst: Inst, ty: Type) -> Value {
@@ -164,34 +138,29 @@ impl Builder {
     }
 
     pub(super) fn constant(&mut self, ty: Type, bits: u32) -> Value {
-        self.push(Inst::Const(Constant { ty, bits }), ty)
+        let constant = Constant { ty, bits };
+        // Formulas name the same few numbers again and again.
+        let slot = (bits.wrapping_mul(0x9e37_79b9) >> 27) as usize;
+        if let Some((known, value)) = self.recent[slot]
+            && known == constant
+        {
+            return value;
+        }
+        let value = self.push(Inst::Const(constant), ty);
+        self.recent[slot] = Some((constant, value));
+        value
     }
 
     /// An f32 constant. −0 becomes 0.
-    pub fn f32(&mut self, x: f32) -> Value {
+    pub(super) fn f32(&mut self, x: f32) -> Value {
         self.constant(Type::F32, (x + 0.0).to_bits())
-    }
-
-    /// An i32 constant.
-    pub fn i32(&mut self, x: i32) -> Value {
-        self.constant(Type::I32, x as u32)
-    }
-
-    /// A u32 constant.
-    pub fn u32(&mut self, x: u32) -> Value {
-        self.constant(Type::U32, x)
-    }
-
-    /// A truth value.
-    pub fn bool(&mut self, x: bool) -> Value {
-        self.constant(Type::Bool, u32::from(x))
     }
 
     /// An op of the table, simplified.
     ///
     /// # Panics
     /// If the operands' number or types are not the table's: a bug of the caller.
-    pub fn op(&mut self, op: Op, operands: &[Value]) -> Value {
+    pub(super) fn op(&mut self, op: Op, operands: &[Value]) -> Value {
         let info = op.info();
         assert_eq!(
             operands.len(),
@@ -334,13 +303,13 @@ impl Builder {
     }
 
     /// `module.tables[table].data[index]`.
-    pub fn load(&mut self, table: u32, index: Value) -> Value {
+    pub(super) fn load(&mut self, table: u32, index: Value) -> Value {
         assert_eq!(self.ty(index), Type::U32, "index of a table");
         self.push(Inst::Load(table, index), Type::F32)
     }
 
     /// The results of a call.
-    pub fn call(&mut self, function: &FunctionRef, arguments: &[Value]) -> Vec<Value> {
+    pub(super) fn call(&mut self, function: &FunctionRef, arguments: &[Value]) -> Vec<Value> {
         self.call_with(function, arguments.into())
     }
 
@@ -355,7 +324,7 @@ impl Builder {
     }
 
     /// The last state of a fold: see [`Inst::Fold`].
-    pub fn fold(
+    pub(super) fn fold(
         &mut self,
         function: &FunctionRef,
         count: Value,
@@ -388,94 +357,20 @@ impl Builder {
 /// Shorthands for the rows of the op table.
 macro_rules! shorthands {
     ($($name:ident $op:ident ($($p:ident),*);)*) => {
-        impl Builder {
+        impl Core {
             $(#[doc = concat!("[`Op::", stringify!($op), "`].")]
-            pub fn $name(&mut self, $($p: Value),*) -> Value {
+            pub(super) fn $name(&mut self, $($p: Value),*) -> Value {
                 self.op(Op::$op, &[$($p),*])
             })*
         }
     };
 }
 shorthands! {
-    add Add (a, b); sub Sub (a, b); mul Mul (a, b); div Div (a, b); neg Neg (a);
-    abs Abs (a); min Min (a, b); max Max (a, b); floor Floor (a); sqrt Sqrt (a);
-    exp Exp (a); ln Ln (a); sin Sin (a); cos Cos (a); high High (a);
-    lt Lt (a, b); le Le (a, b); and And (a, b); or Or (a, b); not Not (a);
-    add_i AddI (a, b); sub_i SubI (a, b); mul_i MulI (a, b); min_i MinI (a, b); max_i MaxI (a, b);
-    lt_i LtI (a, b); eq_i EqI (a, b); and_i AndI (a, b); shr_i ShrI (a, b);
-    add_u AddU (a, b); sub_u SubU (a, b); mul_u MulU (a, b); min_u MinU (a, b);
-    and_u AndU (a, b); or_u OrU (a, b); xor_u XorU (a, b); shl_u ShlU (a, b); shr_u ShrU (a, b);
-    lt_u LtU (a, b); eq_u EqU (a, b);
-    float_i FloatI (a); float_u FloatU (a); trunc_i TruncI (a); bits Bits (a);
-    cast_u CastU (a); cast_i CastI (a);
-}
-
-impl Builder {
-    /// `b` where `condition` holds, else `c`: the select of their type.
-    pub fn select(&mut self, condition: Value, b: Value, c: Value) -> Value {
-        let op = match self.ty(b) {
-            Type::F32 => Op::Select,
-            Type::I32 => Op::SelectI,
-            Type::U32 => Op::SelectU,
-            Type::Bool => {
-                let (yes, no) = (self.and(condition, b), self.not(condition));
-                let otherwise = self.and(no, c);
-                return self.or(yes, otherwise);
-            }
-        };
-        self.op(op, &[condition, b, c])
-    }
-
-    /// The product with a constant.
-    pub fn scale(&mut self, a: Value, by: f32) -> Value {
-        let by = self.f32(by);
-        self.mul(a, by)
-    }
-
-    /// The sum with a constant.
-    pub fn offset(&mut self, a: Value, by: f32) -> Value {
-        let by = self.f32(by);
-        self.add(a, by)
-    }
-
-    /// A bijection of 32-bit words without visible structure (Wellons's lowbias32), the hash of all
-    /// noises and samples.
-    pub fn scramble(&mut self, mut x: Value) -> Value {
-        for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b), (16, 1)] {
-            let by = self.u32(shift);
-            let shifted = self.shr_u(x, by);
-            x = self.xor_u(x, shifted);
-            let factor = self.u32(factor);
-            x = self.mul_u(x, factor);
-        }
-        x
-    }
-
-    /// The square.
-    pub fn square(&mut self, a: Value) -> Value {
-        self.mul(a, a)
-    }
-
-    /// The sum of products `Σ aᵢ bᵢ`.
-    pub fn dot(&mut self, a: &[Value], b: &[Value]) -> Value {
-        let mut sum = self.f32(0.0);
-        for (&x, &y) in a.iter().zip(b) {
-            let product = self.mul(x, y);
-            sum = self.add(sum, product);
-        }
-        sum
-    }
-
-    /// Limits to `[low, high]`, constants.
-    pub fn clamp(&mut self, a: Value, low: f32, high: f32) -> Value {
-        let (low, high) = (self.f32(low), self.f32(high));
-        let a = self.max(a, low);
-        self.min(a, high)
-    }
+    add Add (a, b); sub Sub (a, b); mul Mul (a, b); neg Neg (a);
 }
 
 impl Module {
-    /// A further table; returns its index for [`Builder::load`]. Equal data is stored once.
+    /// A further table; returns its index for [`Builder::load`](super::Builder::load). Equal data is stored once.
     pub fn table(&mut self, name: impl Into<String>, data: impl Into<Numbers>) -> u32 {
         let (name, data) = (name.into(), data.into());
         let same = |t: &Table| t.name == name && t.data == data;
@@ -526,14 +421,14 @@ mod tests {
 
     #[test]
     fn equal_definitions_are_one_value_and_dead_ones_go() {
-        let mut b = Builder::new("f", "A test.");
-        let (x, y) = (b.param_f32("x"), b.param_f32("y"));
+        let mut b = Core::new("f", "A test.");
+        let [x, y] = ["x", "y"].map(|name| b.param(name, Type::F32));
         let (s, t) = (b.add(x, y), b.add(y, x));
         assert_eq!(s, t);
         let zero = b.f32(0.0);
         assert_eq!(b.mul(x, zero), zero);
         assert_eq!(b.add(x, zero), x);
-        b.exp(x);
+        b.op(Op::Exp, &[x]);
         b.result("out", s);
         let mut module = Module::default();
         b.finish(&mut module);
@@ -543,14 +438,15 @@ mod tests {
     #[test]
     fn a_fold_of_no_turns_is_its_initial_state() {
         let mut module = Module::default();
-        let mut body = Builder::new("body", "A test.");
+        let mut body = Core::new("body", "A test.");
         body.param("index", Type::U32);
-        let state = body.param_f32("state");
-        let next = body.offset(state, 1.0);
+        let state = body.param("state", Type::F32);
+        let one = body.f32(1.0);
+        let next = body.add(state, one);
         body.result("state", next);
         let body = body.finish(&mut module);
-        let mut b = Builder::new("f", "A test.");
-        let (zero, x) = (b.u32(0), b.param_f32("x"));
-        assert_eq!(b.fold(&body, zero, &[x], &[]), vec![x]);
+        let mut b = Core::new("f", "A test.");
+        let (none, x) = (b.constant(Type::U32, 0), b.param("x", Type::F32));
+        assert_eq!(b.fold(&body, none, &[x], &[]), vec![x]);
     }
 }

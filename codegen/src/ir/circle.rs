@@ -1,6 +1,6 @@
 //! Cosine and sine together.
 
-use super::{Builder, Value};
+use super::Float;
 
 /// sin(πt)/t on |t| ≤ ½ in powers of t²: the interpolant at Chebyshev's nodes, 1e-8 off.
 const SINE: [f32; 5] = [
@@ -19,55 +19,45 @@ const COSINE: [f32; 5] = [
     0.219_682_42,
 ];
 
-impl Builder {
+impl<'b> Float<'b> {
     /// cos(2πt) and sin(2πt) of turns in [−½, ½], within 1e-6: both from sine and cosine of half of
     /// the angle, which need no quadrants. Two ops of the table would reduce the angle twice.
-    pub fn circle(&mut self, turns: Value) -> [Value; 2] {
-        let square = self.square(turns);
-        let [sine, cosine] = [SINE, COSINE].map(|coefficients| {
-            let mut sum = self.f32(coefficients[4]);
-            for &c in coefficients[..4].iter().rev() {
-                sum = self.mul(sum, square);
-                sum = self.offset(sum, c);
-            }
-            sum
+    #[must_use]
+    pub fn circle(self) -> [Self; 2] {
+        let square = self.square();
+        let [sine, cosine] = [SINE, COSINE].map(|[rest @ .., last]| {
+            let polynomial = self.literal(last);
+            (rest.iter().rev()).fold(polynomial, |sum, &c| sum * square + c)
         });
-        let sine = self.mul(sine, turns);
-        let twice = self.add(sine, sine);
-        let (of_cosine, of_sine) = (self.mul(twice, sine), self.mul(twice, cosine));
-        let one = self.f32(1.0);
-        [self.sub(one, of_cosine), of_sine]
+        let sine = sine * self;
+        let twice = sine + sine;
+        [1.0 - twice * sine, twice * cosine]
     }
+}
 
-    /// Cosine and sine of the multiples 1, 2, … of an angle of which they are given, by Chebyshev's
-    /// recurrence.
-    pub fn multiples<const N: usize>(&mut self, [cosine, sine]: [Value; 2]) -> [[Value; 2]; N] {
-        let twice = self.add(cosine, cosine);
-        let mut before = [self.f32(1.0), self.f32(0.0)];
-        let mut here = [cosine, sine];
-        std::array::from_fn(|_| {
-            let next = [0, 1].map(|i| {
-                let raised = self.mul(twice, here[i]);
-                self.sub(raised, before[i])
-            });
-            (before, here) = (here, next);
-            before
-        })
-    }
+/// Cosine and sine of the multiples 1, 2, … of an angle of which they are given, by Chebyshev's
+/// recurrence.
+pub fn multiples<const N: usize>([cosine, sine]: [Float<'_>; 2]) -> [[Float<'_>; 2]; N] {
+    let twice = cosine + cosine;
+    let mut before = [1.0, 0.0].map(|x| cosine.literal(x));
+    let mut here = [cosine, sine];
+    std::array::from_fn(|_| {
+        let next = [0, 1].map(|i| twice * here[i] - before[i]);
+        (before, here) = (here, next);
+        before
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::cpu::{Evaluator, Input, Scratch};
-    use crate::ir::Module;
+    use crate::ir::{Builder, Module};
 
     #[test]
     fn the_circle_is_within_1e_6_and_starts_at_1() {
         let mut module = Module::default();
-        let mut b = Builder::new("f", "A test.");
-        let turns = b.param_f32("turns");
-        let [cosine, sine] = b.circle(turns);
+        let b = Builder::new("f", "A test.");
+        let [cosine, sine] = b.float_param("turns").circle();
         b.result("cosine", cosine);
         b.result("sine", sine);
         b.finish(&mut module);

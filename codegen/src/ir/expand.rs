@@ -27,21 +27,19 @@ impl Module {
 
 #[cfg(test)]
 mod tests {
-    use crate::ir::{Builder, Module, Type};
+    use crate::ir::{Builder, Module};
 
     #[test]
     fn a_call_counts_as_what_it_calls() {
         let mut module = Module::default();
-        let mut b = Builder::new("twice", "x + x");
-        let x = b.param("x", Type::F32);
-        let twice = b.add(x, x);
-        b.result("twice", twice);
+        let b = Builder::new("twice", "x + x");
+        let x = b.float_param("x");
+        b.result("twice", x + x);
         let twice = b.finish(&mut module);
-        let mut b = Builder::new("eight", "8 x");
-        let x = b.param("x", Type::F32);
-        let mut value = x;
+        let b = Builder::new("eight", "8 x");
+        let mut value = b.float_param("x");
         for _ in 0..3 {
-            value = b.call(&twice, &[value])[0];
+            value = b.call(&twice, value)[0];
         }
         b.result("eight", value);
         b.finish(&mut module);
@@ -51,16 +49,14 @@ mod tests {
     #[test]
     fn many_doublings_do_not_overflow() {
         let mut module = Module::default();
-        let mut b = Builder::new("f0", "x + x");
-        let x = b.param("x", Type::F32);
-        let sum = b.add(x, x);
-        b.result("r", sum);
+        let b = Builder::new("f0", "x + x");
+        let x = b.float_param("x");
+        b.result("r", x + x);
         let mut last = b.finish(&mut module);
         for level in 1..=70 {
-            let mut b = Builder::new(format!("f{level}"), "The one before, twice.");
-            let x = b.param("x", Type::F32);
-            let once = b.call(&last, &[x])[0];
-            let twice = b.call(&last, &[once])[0];
+            let b = Builder::new(format!("f{level}"), "The one before, twice.");
+            let once = b.call(&last, b.float_param("x"))[0];
+            let twice = b.call(&last, once)[0];
             b.result("r", twice);
             last = b.finish(&mut module);
         }

@@ -224,26 +224,22 @@ fn rewritten(function: Function, i: usize, read: &[Read], shrinks: &[bool]) -> F
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ir::{Builder, Type};
+    use crate::ir::Builder;
 
     #[test]
     fn what_only_feeds_itself_goes_and_what_feeds_others_stays() {
         let mut module = Module::default();
-        let mut body = Builder::new("body", "A test.");
-        body.param("index", Type::U32);
-        let state = ["read", "feeds", "idle"].map(|name| body.param_f32(name));
-        let [used, unused] = ["used", "unused"].map(|name| body.param_f32(name));
-        let sum = body.add(state[0], state[1]);
-        let next = body.mul(state[1], used);
-        let idle = body.mul(state[2], unused);
-        for (name, value) in [("read", sum), ("feeds", next), ("idle", idle)] {
-            body.result(name, value);
-        }
+        let body = Builder::new("body", "A test.");
+        body.uint_param("index");
+        let state = ["read", "feeds", "idle"].map(|name| body.float_param(name));
+        let [used, unused] = ["used", "unused"].map(|name| body.float_param(name));
+        body.result("read", state[0] + state[1]);
+        body.result("feeds", state[1] * used);
+        body.result("idle", state[2] * unused);
         let body = body.finish(&mut module);
-        let mut b = Builder::new("f", "A test.");
-        let (x, y) = (b.param_f32("x"), b.param_f32("y"));
-        let count = b.u32(3);
-        let state = b.fold(&body, count, &[x, y, y], &[x, y]);
+        let b = Builder::new("f", "A test.");
+        let (x, y) = (b.float_param("x"), b.float_param("y"));
+        let state = b.fold(&body, b.uint(3), [x, y, y], [x, y]);
         b.result("out", state[0]);
         b.finish(&mut module);
         let module = module.without_idle_state();

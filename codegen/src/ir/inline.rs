@@ -1,7 +1,8 @@
 //! Inlining calls: what two calls have in common is found, and what nobody reads is gone. Every
 //! result keeps its bits.
 
-use super::{Builder, Function, FunctionRef, Inst, Module, Value};
+use super::build::Core;
+use super::{Function, FunctionRef, Inst, Module, Value};
 use rustc_hash::FxHashMap;
 
 /// A callee of more instructions than this stays a call.
@@ -17,7 +18,7 @@ impl Module {
             tables: self.tables.clone(),
         };
         for function in &self.functions {
-            let mut b = Builder::new(function.name.clone(), function.doc.clone());
+            let mut b = Core::new(function.name.clone(), function.doc.clone());
             let parameters: Vec<Value> = (function.params.iter())
                 .map(|p| b.param(p.name.clone(), p.ty))
                 .collect();
@@ -34,7 +35,7 @@ impl Module {
 /// Builds the instructions of `function` for these arguments; where each value went. Callees are
 /// functions of `module`.
 fn copied(
-    b: &mut Builder,
+    b: &mut Core,
     function: &Function,
     arguments: &[Value],
     module: &Module,

@@ -42,6 +42,9 @@ impl Argument {
     }
 }
 
+/// What the arguments of a call are.
+pub(super) type Pattern = SmallVec<[Argument; 128]>;
+
 /// What tells shared functions apart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Key {

@@ -1,6 +1,7 @@
 //! Random programs, for the property tests of the printer and the emitters.
 
-use super::{Builder, FOOTPRINT, FunctionRef, Interface, Module, Op, Port, Program, Type, Value};
+use super::build::Core;
+use super::{FOOTPRINT, FunctionRef, Interface, Module, Op, Port, Program, Type, Value};
 use proptest::prelude::*;
 
 /// A stream of choices: proptest shrinks it like any list of numbers.
@@ -15,28 +16,28 @@ impl Choices {
         self.0.len() == 0
     }
 
-    fn pick(&mut self, b: &Builder, values: &[Value], ty: Type) -> Value {
+    fn pick(&mut self, b: &Core, values: &[Value], ty: Type) -> Value {
         let fitting: Vec<Value> = values.iter().copied().filter(|&v| b.ty(v) == ty).collect();
         fitting[self.next(fitting.len())]
     }
 }
 
 /// One value of each type, so that every op has operands.
-fn constants(b: &mut Builder, choices: &mut Choices) -> Vec<Value> {
+fn constants(b: &mut Core, choices: &mut Choices) -> Vec<Value> {
     let integers = [0, 1, -1, i32::MIN, i32::MAX, 40];
     let reals = [0.0, 1.0, -2.5, 1e-7, f32::MAX, 0.1, -1e-40];
     let naturals = [0, 1, 31, 33, u32::MAX];
     vec![
         b.f32(reals[choices.next(reals.len())]),
-        b.i32(integers[choices.next(integers.len())]),
-        b.u32(naturals[choices.next(naturals.len())]),
-        b.bool(choices.next(2) == 1),
+        b.constant(Type::I32, integers[choices.next(integers.len())] as u32),
+        b.constant(Type::U32, naturals[choices.next(naturals.len())]),
+        b.constant(Type::Bool, choices.next(2) as u32),
     ]
 }
 
 /// Adds up to so many instructions, fewer if the stream ends.
 fn fill(
-    b: &mut Builder,
+    b: &mut Core,
     values: &mut Vec<Value>,
     callees: &[(FunctionRef, Vec<Type>)],
     choices: &mut Choices,
@@ -67,14 +68,14 @@ fn fill(
                 let count = match choices.next(3) {
                     0 => {
                         let condition = choices.pick(b, values, Type::Bool);
-                        let (one, zero) = (b.u32(1), b.u32(0));
+                        let (one, zero) = (b.constant(Type::U32, 1), b.constant(Type::U32, 0));
                         if choices.next(2) == 0 {
-                            b.select(condition, one, zero)
+                            b.op(Op::SelectU, &[condition, one, zero])
                         } else {
-                            b.select(condition, zero, one)
+                            b.op(Op::SelectU, &[condition, zero, one])
                         }
                     }
-                    1 => b.u32(choices.next(4) as u32),
+                    1 => b.constant(Type::U32, choices.next(4) as u32),
                     _ => choices.pick(b, values, Type::U32),
                 };
                 let (state, captures) = arguments.split_at(callee.results.len());
@@ -111,7 +112,7 @@ pub(crate) fn program() -> impl Strategy<Value = Program> {
         module.table("steps", vec![0.25, -1.5, 3.0]);
         let mut callees: Vec<(FunctionRef, Vec<Type>)> = Vec::new();
         for number in 0..choices.next(4) {
-            let mut b = Builder::new(format!("helper_{number}"), "A helper.");
+            let mut b = Core::new(format!("helper_{number}"), "A helper.");
             let types = [Type::F32, Type::I32, Type::U32, Type::Bool];
             let results: Vec<Type> = (0..1 + choices.next(3))
                 .map(|_| types[choices.next(4)])
@@ -131,7 +132,7 @@ pub(crate) fn program() -> impl Strategy<Value = Program> {
             }
             callees.push((b.finish(&mut module), params));
         }
-        let mut b = Builder::new("random", "A random texture.");
+        let mut b = Core::new("random", "A random texture.");
         let mut values: Vec<Value> = FOOTPRINT
             .iter()
             .map(|&(name, ty)| b.param(name, ty))

@@ -299,18 +299,14 @@ mod tests {
     fn module() -> Module {
         let mut module = Module::default();
         module.table("steps", vec![1.0]);
-        let mut body = Builder::new("body", "A body.");
-        let index = body.param("index", Type::U32);
-        let state = body.param_f32("state");
-        let (turn, step) = (body.float_u(index), body.load(0, index));
-        let next = body.add(state, turn);
-        let next = body.mul(next, step);
-        body.result("state", next);
+        let body = Builder::new("body", "A body.");
+        let index = body.uint_param("index");
+        let state = body.float_param("state");
+        body.result("state", (state + index.to_float()) * body.load(0, index));
         let body = body.finish(&mut module);
-        let mut b = Builder::new("entry", "An entry.");
-        let (x, count) = (b.param_f32("x"), b.u32(3));
-        let y = b.fold(&body, count, &[x], &[])[0];
-        b.result("y", y);
+        let b = Builder::new("entry", "An entry.");
+        let x = b.float_param("x");
+        b.result("y", b.fold(&body, b.uint(3), x, ()));
         b.finish(&mut module);
         module
     }

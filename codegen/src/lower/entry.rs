@@ -2,51 +2,38 @@
 
 use super::finish::finish;
 use super::function::{footprint_function, graph_function};
-use super::place::{finite, places};
 use super::{Arguments, Compiler, Method, ahead, sampling};
-use crate::ir::{Builder, FunctionRef, Module, Value};
+use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Scalar, Scalars};
 use crate::moments::{Branch, Mode};
 
 /// Adds the entry of the compiled method to the module, as its last function.
 pub(super) fn build(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
-    let options = compiler.options;
-    let graph =
-        |module: &mut Module, mode, suffix: &str| graph_function(compiler, module, mode, suffix);
-    match options.method {
-        Method::Point => entry_over(compiler, module, name, |m| graph(m, Mode::Point, "point").0),
-        Method::Naive => entry_over(compiler, module, name, |m| graph(m, Mode::Naive, "naive").0),
-        Method::Ensemble => {
-            entry_over(compiler, module, name, |m| {
-                graph(m, Mode::Ensemble, "ensemble").0
-            });
+    let (mode, suffix) = match compiler.options.method {
+        Method::Point => (Mode::Point, "point"),
+        Method::Naive => (Mode::Naive, "naive"),
+        Method::Ensemble => (Mode::Ensemble, "ensemble"),
+        Method::Local => (Mode::Local, "local"),
+        Method::Quad => (Mode::Quad, "quad"),
+        Method::Auto => return auto(compiler, module, name),
+        Method::Supersample(samples) => {
+            return sampling::supersample(compiler, module, name, samples);
         }
-        Method::Local => entry_over(compiler, module, name, |m| graph(m, Mode::Local, "local").0),
-        Method::Quad => entry_over(compiler, module, name, |m| graph(m, Mode::Quad, "quad").0),
-        Method::Auto => auto(compiler, module, name),
-        Method::Supersample(samples) => sampling::supersample(compiler, module, name, samples),
-        Method::Split(k) => sampling::split(compiler, module, name, k),
-    }
+        Method::Split(k) => return sampling::split(compiler, module, name, k),
+    };
+    let (function, _) = graph_function(compiler, module, mode, suffix);
+    entry_over(compiler, module, name, &function);
 }
 
 /// The entry that passes a footprint made finite on to one function.
-fn entry_over(
-    compiler: &Compiler<'_>,
-    module: &mut Module,
-    name: &str,
-    function: impl FnOnce(&mut Module) -> FunctionRef,
-) {
-    let function = function(module);
-    let mut b = Builder::new(name, "The texture over a footprint.");
-    let arguments = Arguments::declare(&mut b, compiler.graph);
-    let mut arguments = finite(&mut b, compiler.graph, &arguments);
+fn entry_over(compiler: &Compiler<'_>, module: &mut Module, name: &str, function: &FunctionRef) {
+    let b = &Builder::new(name, "The texture over a footprint.");
+    let mut arguments = Arguments::declare(b, compiler.graph).finite();
     if compiler.options.method == Method::Point {
         // A point has no footprint, and needs none that is finite.
-        for place in places(compiler.graph) {
-            arguments[place.changes()].fill(b.f32(0.0));
-        }
+        arguments = arguments.at_point();
     }
-    let results = b.call(&function, &arguments);
-    finish(module, b, &function, &results);
+    let results = b.call(function, arguments);
+    finish(module, b, function, results);
 }
 
 /// `quad` where a source's footprint lies between 0.02 and 0.6 wavelengths and something that is
@@ -59,40 +46,27 @@ fn auto(compiler: &Compiler<'_>, module: &mut Module, name: &str) {
         (local, band.flatten())
     });
     let Some(band) = band else {
-        return entry_over(compiler, module, name, |_| local);
+        return entry_over(compiler, module, name, &local);
     };
     let quad = (ahead.and_then(|ahead| ahead.join(compiler, module)))
         .unwrap_or_else(|| graph_function(compiler, module, other.0, other.1).0);
-    let branches = [(&local, "by_local"), (&quad, "by_quad")].map(|(function, suffix)| {
-        let declare = |b: &mut Builder| Arguments::declare(b, compiler.graph).all();
-        Branch::new(module, suffix, function, declare)
+    let [by_local, by_quad] = [(&local, "by_local"), (&quad, "by_quad")].map(|(function, name)| {
+        Branch::new(module, name, function, |b| {
+            Arguments::declare(b, compiler.graph).scalars()
+        })
     });
-    let mut b = Builder::new(name, "The texture over a footprint.");
-    let arguments = Arguments::declare(&mut b, compiler.graph);
-    let arguments = finite(&mut b, compiler.graph, &arguments);
-    let bends = b.call(&band, &arguments)[0];
-    let (zero, one) = (b.u32(0), b.u32(1));
-    let none = b.f32(0.0);
-    let mut state = vec![none; local.results.len()];
-    for (branch, [yes, no]) in branches.iter().zip([[zero, one], [one, zero]]) {
-        let count = b.select(bends, yes, no);
-        state = b.fold(&branch.0, count, &state, &arguments);
-    }
-    finish(module, b, &local, &state);
+    let b = &Builder::new(name, "The texture over a footprint.");
+    let arguments = Arguments::declare(b, compiler.graph).finite();
+    let bends = b.call_any(&band, &arguments)[0].bool();
+    let state = vec![b.float(0.0); local.results.len()];
+    let state = b.fold(&by_local.0, bends.select(0u32, 1u32), state, &arguments);
+    let state = b.fold(&by_quad.0, bends.select(1u32, 0u32), state, &arguments);
+    finish(module, b, &local, state);
 }
 
 /// Whether a footprint lies where `quad` pays.
-fn within_band(b: &mut Builder, footprints: &[Value]) -> Value {
-    let (low, high) = (b.f32(0.02), b.f32(0.6));
-    let within = |b: &mut Builder, &footprint: &Value| {
-        let above = b.lt(low, footprint);
-        let below = b.lt(footprint, high);
-        b.and(above, below)
-    };
-    let mut any = within(b, &footprints[0]);
-    for footprint in &footprints[1..] {
-        let within = within(b, footprint);
-        any = b.or(any, within);
-    }
-    any
+fn within_band<'b>(footprints: &[Float<'b>]) -> Scalar<'b> {
+    let within = |footprint: &Float<'b>| footprint.gt(0.02) & footprint.lt(0.6);
+    let any: Option<Bool<'b>> = footprints.iter().map(within).reduce(|any, one| any | one);
+    any.expect("there are footprints").into()
 }

@@ -1,7 +1,7 @@
-//! Functions of the graph: what it is in one mode, and what a footprint is to its sources.
+//! Functions of the whole graph, of which entries are made.
 
 use super::{Compiler, Lower};
-use crate::ir::{Builder, FunctionRef, Module, Value};
+use crate::ir::{Float, FunctionRef, Module, Scalar};
 use crate::moments::Mode;
 
 /// A function of the graph in one mode; whether anything in it is not linear.
@@ -20,35 +20,32 @@ pub(super) fn graph_function(
     };
     // A node makes about so many, most of them short-lived constants and products with 0 and 1.
     let room = 24 * compiler.facts.order.len();
-    let b = Builder::new(name, doc).with_capacity(room);
+    let b = &compiler.builder(name, doc).with_capacity(room);
     let mut lower = Lower::new(compiler, module, b, mode);
     lower.run();
-    let results = lower.results();
-    let nonlinear = lower.nonlinear;
-    let mut b = lower.algebra.b;
-    for (name, value) in results {
+    for (name, value) in lower.results() {
         b.result(name, value);
     }
+    let nonlinear = lower.nonlinear;
     (b.finish(module), nonlinear)
 }
 
-/// A function of the graph that gives the largest and the smallest footprint of its sources that
+/// A function of the graph that gives what `reduce` makes of the footprints of its sources that
 /// matter, in wavelengths: `None` without sources.
 pub(super) fn footprint_function(
     compiler: &Compiler<'_>,
     module: &mut Module,
     name: &str,
-    reduce: impl Fn(&mut Builder, &[Value]) -> Value,
+    reduce: impl for<'b> Fn(&[Float<'b>]) -> Scalar<'b>,
 ) -> Option<FunctionRef> {
     let doc = "What the footprint is to the sources, in their wavelengths.";
-    let mut lower = Lower::new(compiler, module, Builder::new(name, doc), Mode::Local);
+    let b = &compiler.builder(name, doc);
+    let mut lower = Lower::new(compiler, module, b, Mode::Local);
     lower.run_sources();
     let footprints = std::mem::take(&mut lower.footprints);
-    let mut b = lower.algebra.b;
     if footprints.is_empty() {
         return None;
     }
-    let reduced = reduce(&mut b, &footprints);
-    b.result("result", reduced);
+    b.result("result", reduce(&footprints));
     Some(b.finish(module))
 }

@@ -8,7 +8,7 @@
 //! between, or where the amplitude of the noise itself is live, the region is averaged where it
 //! runs, by [`super::taps`].
 
-use super::{Arguments, Bundle, Compiler, Lower, Options};
+use super::{Arguments, Bundle, Compiler, Lower, Options, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Branch, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
@@ -24,11 +24,11 @@ const MOST_KNOTS: u32 = 8;
 
 /// That a node is a function of one scalar signal alone.
 #[derive(Clone, Debug)]
-pub(super) struct Chain {
+pub(super) struct Chain<'b> {
     /// The node whose output the function takes.
     pub(super) entry: NodeId,
     /// That output, which outlives its other readers.
-    pub(super) signal: Rc<Signal>,
+    pub(super) signal: Rc<Signal<'b>>,
     /// How many nodes between are not linear, at most.
     pub(super) bends: u32,
     /// Whether no live parameter shapes it.
@@ -38,16 +38,16 @@ pub(super) struct Chain {
 }
 
 /// What a node that is read is known to be.
-pub(super) enum Known {
+pub(super) enum Known<'b> {
     /// A number; whether literals alone shape it.
     Certain { literal: bool },
     /// A function of one signal: itself, at least.
-    Function(Chain),
+    Function(Chain<'b>),
     /// Several signals, of which no one function is known.
     Opaque,
 }
 
-impl Chain {
+impl Chain<'_> {
     /// The values of the entry that matter, if they are bounded.
     pub(super) fn domain(&self) -> Option<[f32; 2]> {
         if let Some(period) = self.period {
@@ -60,9 +60,9 @@ impl Chain {
 
 impl<'a> Compiler<'a> {
     /// The same compilation with other options, and nothing built yet.
-    pub(super) fn with_options<'b>(&self, options: &'b Options) -> Compiler<'b>
+    pub(super) fn with_options<'o>(&self, options: &'o Options) -> Compiler<'o>
     where
-        'a: 'b,
+        'a: 'o,
     {
         Compiler {
             library: self.library.clone(),
@@ -71,10 +71,15 @@ impl<'a> Compiler<'a> {
     }
 }
 
-impl Lower<'_> {
+impl<'b> Lower<'_, 'b> {
     /// Records what the node, just lowered to `closed`, is a function of; its bundle by fusion,
     /// where that is better than closing it alone.
-    pub(super) fn fuse(&mut self, index: usize, node: &Node, closed: &[Signal]) -> Option<Bundle> {
+    pub(super) fn fuse(
+        &mut self,
+        index: usize,
+        node: &Node,
+        closed: &[Signal<'b>],
+    ) -> Option<Bundle<'b>> {
         if !self.algebra.mode.spreads() {
             return None;
         }
@@ -118,7 +123,7 @@ impl Lower<'_> {
     }
 
     /// The chain that a periodic function of a scalar begins.
-    fn wave(&self, node: &Node, period: f32) -> Option<Chain> {
+    fn wave(&self, node: &Node, period: f32) -> Option<Chain<'b>> {
         let mut entry = None;
         let mut fixed = true;
         for input in &node.inputs {
@@ -141,8 +146,8 @@ impl Lower<'_> {
     }
 
     /// The one signal that all varying inputs of a node are functions of.
-    fn chain(&self, node: &Node) -> Option<Chain> {
-        let mut chain: Option<Chain> = None;
+    fn chain(&self, node: &Node) -> Option<Chain<'b>> {
+        let mut chain: Option<Chain<'b>> = None;
         let mut fixed = true;
         for input in &node.inputs {
             let id = match &input.source {
@@ -179,13 +184,12 @@ impl Lower<'_> {
     }
 
     /// What an input is known to be; `None` where it is not there.
-    pub(super) fn known(&self, id: NodeId) -> Option<Known> {
+    pub(super) fn known(&self, id: NodeId) -> Option<Known<'b>> {
         if let Some(chain) = &self.chains[id.index()] {
             return Some(Known::Function(chain.clone()));
         }
         let bundle = self.bundles[id.index()].as_ref()?;
-        let certain = |signal: &Signal| signal.is_certain(&self.algebra.b);
-        Some(if bundle.iter().all(certain) {
+        Some(if bundle.iter().all(Signal::is_certain) {
             Known::Certain {
                 literal: self.compiler.facts.literal[id.index()],
             }
@@ -205,11 +209,11 @@ impl Lower<'_> {
     fn tabulated(
         &mut self,
         index: usize,
-        closed: &[Signal],
+        closed: &[Signal<'b>],
         node: &Node,
-        chain: &Chain,
+        chain: &Chain<'b>,
         domain: [f32; 2],
-    ) -> Bundle {
+    ) -> Bundle<'b> {
         let compiler = self.compiler;
         let (entry, periodic) = (chain.entry, chain.period.is_some());
         let known = compiler.fused.borrow().get(&index).cloned();
@@ -273,14 +277,9 @@ fn function(
 ) -> FunctionRef {
     let graph = compiler.graph;
     let name = super::identifier(&graph.nodes[index].name);
-    let mut b = Builder::new(format!("{name}_of"), "A function of one signal.");
-    let x = b.param_f32("x");
-    let argument = Signal::certain(&mut b, x);
-    let arguments = Arguments {
-        footprint: [x; 8],
-        position: None,
-        parameters: Vec::new(),
-    };
+    let b = &Builder::new(format!("{name}_of"), "A function of one signal.");
+    let argument = Signal::certain(b.float_param("x"));
+    let arguments = Arguments::without_place(b, Vec::new());
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
     lower.bundles[entry.index()] = Some(vec![argument]);
     for node in region(compiler, index, &[entry]) {
@@ -291,11 +290,7 @@ fn function(
     let bundle = lower.bundles[index]
         .take()
         .expect("the region ends at the node");
-    let mut b = lower.algebra.b;
-    for (i, signal) in bundle.iter().enumerate() {
-        let value = signal.flat_mean(&mut b);
-        b.result(format!("value_{i}"), value);
-    }
+    value_results(b, &bundle);
     b.finish(module)
 }
 

@@ -1,14 +1,15 @@
 //! What nodes ask: the builder, shared functions, the surface, and their inputs in every form.
 
+use super::place::Place;
 use super::{Bundle, Lower};
-use crate::ir::{Builder, FunctionRef, Module, Type as Scalar, Value};
+use crate::ir::{Builder, Float, FunctionRef, Int, Module, Type as Kind, Vec2};
 use crate::moments::{Mode, Signal};
 use mipless_graph::{Literal, Node, NodeId, Source, Stops, Type};
 
-impl Lower<'_> {
+impl<'b> Lower<'_, 'b> {
     /// The builder of the function.
-    pub fn b(&mut self) -> &mut Builder {
-        &mut self.algebra.b
+    pub fn b(&self) -> &'b Builder {
+        self.algebra.b
     }
 
     /// Which moments are carried.
@@ -38,34 +39,26 @@ impl Lower<'_> {
     }
 
     /// The surface's position: cell and fraction, g = A.
-    pub fn surface(&mut self) -> Bundle {
-        let [cell_x, cell_y, u, v, du_dx, dv_dx, du_dy, dv_dy] = self.arguments.footprint;
-        let s = self.filter_sd;
-        let spreads = self.algebra.mode.filters();
-        let b = &mut self.algebra.b;
-        [(cell_x, u, [du_dx, du_dy]), (cell_y, v, [dv_dx, dv_dy])]
-            .map(|(cell, fraction, change)| {
-                place(b, cell, fraction, spreads.then_some((change, s)))
-            })
-            .to_vec()
+    pub fn surface(&self) -> Bundle<'b> {
+        self.coordinates(self.arguments.footprint)
     }
 
     /// The surface's position in space: cells and fractions, g = A.
     ///
     /// # Panics
     /// If no class rule of the graph says that a vector of three components is a position.
-    pub fn space(&mut self) -> Bundle {
-        let all = self
-            .arguments
-            .position
-            .expect("the graph reads the position");
-        let s = self.filter_sd;
-        let spreads = self.algebra.mode.filters();
-        let b = &mut self.algebra.b;
-        (0..3)
+    pub fn space(&self) -> Bundle<'b> {
+        let position = self.arguments.position;
+        self.coordinates(position.expect("the graph reads the position"))
+    }
+
+    fn coordinates<const AXES: usize>(&self, place: Place<'b, AXES>) -> Bundle<'b> {
+        let spread = (self.algebra.mode.filters()).then_some(self.filter_sd);
+        (0..AXES)
             .map(|axis| {
-                let change = [all[6 + axis], all[9 + axis]];
-                place(b, all[axis], all[3 + axis], spreads.then_some((change, s)))
+                let change = Vec2([place.right[axis], place.down[axis]]);
+                let spread = spread.map(|sd| change * sd);
+                coordinate(place.cell[axis], place.fraction[axis], spread)
             })
             .collect()
     }
@@ -74,17 +67,12 @@ impl Lower<'_> {
     ///
     /// # Panics
     /// If the node has no such input.
-    pub fn bundle(&mut self, node: &Node, port: &str) -> Bundle {
+    pub fn bundle(&self, node: &Node, port: &str) -> Bundle<'b> {
         let input = node.input(port);
         let bundle = match &input.source {
-            Source::Literal(literal) => {
-                let b = &mut self.algebra.b;
-                literal
-                    .numbers()
-                    .into_iter()
-                    .map(|x| Signal::constant(b, x))
-                    .collect()
-            }
+            Source::Literal(literal) => (literal.numbers().into_iter())
+                .map(|x| Signal::constant(self.algebra.b, x))
+                .collect(),
             Source::Node(id) => self.output(*id),
             Source::Surface if input.ty == Type::Vector3 => self.space(),
             Source::Surface => self.surface(),
@@ -98,16 +86,12 @@ impl Lower<'_> {
                 (0..parameter.ty.components())
                     .map(|i| {
                         let value = self.arguments.parameters[first + i];
-                        let b = &mut self.algebra.b;
-                        let value = match b.ty(value) {
-                            Scalar::I32 => b.float_i(value),
-                            Scalar::Bool => {
-                                let (one, zero) = (b.f32(1.0), b.f32(0.0));
-                                b.select(value, one, zero)
-                            }
-                            _ => value,
+                        let value = match value.ty() {
+                            Kind::I32 => value.int().to_float(),
+                            Kind::Bool => value.bool().select(1.0, 0.0),
+                            _ => value.float(),
                         };
-                        Signal::certain(b, value).with_range(range)
+                        Signal::certain(value).with_range(range)
                     })
                     .collect()
             }
@@ -115,31 +99,31 @@ impl Lower<'_> {
         self.promote(bundle, input.ty)
     }
 
-    fn output(&self, id: NodeId) -> Bundle {
+    fn output(&self, id: NodeId) -> Bundle<'b> {
         self.bundles[id.index()]
             .clone()
             .expect("an input is lowered before its user")
     }
 
     /// Floats broadcast; a colour gains an alpha of 1.
-    fn promote(&mut self, mut bundle: Bundle, to: Type) -> Bundle {
+    fn promote(&self, mut bundle: Bundle<'b>, to: Type) -> Bundle<'b> {
         let components = to.components();
         if bundle.len() == 1 && components > 1 {
             // A float as a colour with alpha is opaque.
             let opaque = to == Type::Color4;
             bundle = vec![bundle[0].clone(); components];
             if opaque {
-                bundle[3] = Signal::constant(&mut self.algebra.b, 1.0);
+                bundle[3] = Signal::constant(self.algebra.b, 1.0);
             }
         }
         while bundle.len() < components {
-            bundle.push(Signal::constant(&mut self.algebra.b, 1.0));
+            bundle.push(Signal::constant(self.algebra.b, 1.0));
         }
         bundle
     }
 
     /// The one signal of a float input.
-    pub fn signal(&mut self, node: &Node, port: &str) -> Signal {
+    pub fn signal(&self, node: &Node, port: &str) -> Signal<'b> {
         let mut bundle = self.bundle(node, port);
         assert_eq!(bundle.len(), 1, "{port} of {} is a float", node.spec.name);
         bundle.remove(0)
@@ -147,9 +131,8 @@ impl Lower<'_> {
 
     /// The mean of a float input that is a number to this node, such as an amplitude; where it
     /// varies over the surface its own spread is ignored.
-    pub fn number(&mut self, node: &Node, port: &str) -> Value {
-        let signal = self.signal(node, port);
-        signal.flat_mean(&mut self.algebra.b)
+    pub fn number(&self, node: &Node, port: &str) -> Float<'b> {
+        self.signal(node, port).flat_mean()
     }
 
     /// A uniform integer.
@@ -198,44 +181,35 @@ impl Lower<'_> {
 
     /// Reports the footprint of a source, in wavelengths of its dominant detail: `auto` and `split`
     /// decide by it.
-    pub fn source_footprint(&mut self, wavelengths: Value) {
+    pub fn source_footprint(&mut self, wavelengths: Float<'b>) {
         self.source_detail(wavelengths, 1.0);
     }
 
     /// The same of a source whose root mean square wavenumber, √(E|∇|²/Var), is `finer` times that of
     /// its dominant detail.
-    pub fn source_detail(&mut self, wavelengths: Value, finer: f32) {
+    pub fn source_detail(&mut self, wavelengths: Float<'b>, finer: f32) {
         self.footprints.push(wavelengths);
-        let detail = self.algebra.b.scale(wavelengths, finer);
-        self.details.push(detail);
+        self.details.push(wavelengths * finer);
     }
 
     /// Reports the footprint of a pattern, in wavelengths of its root mean square wavenumber, to what
     /// estimates slopes; nothing else depends on it.
-    pub fn pattern_detail(&mut self, wavelengths: Value) {
+    pub fn pattern_detail(&mut self, wavelengths: Float<'b>) {
         self.details.push(wavelengths);
     }
 }
 
-/// A coordinate of the surface: its mean carried as a cell and a fraction in [0, 1), and its
-/// changes from pixel to pixel times the standard deviation of the filter, if it spreads.
-fn place(
-    b: &mut Builder,
-    cell: Value,
-    fraction: Value,
-    spread: Option<([Value; 2], f32)>,
-) -> Signal {
-    let zero = b.f32(0.0);
+/// A coordinate of the surface: its mean carried as a cell and a fraction in [0, 1), and its linear
+/// response, if it spreads.
+fn coordinate<'b>(cell: Int<'b>, fraction: Float<'b>, g: Option<Vec2<'b>>) -> Signal<'b> {
     let start = Signal {
         cell: Some(cell),
-        ..Signal::certain(b, zero)
+        ..Signal::certain(fraction.literal(0.0))
     };
-    let mut signal = start.offset(b, fraction);
-    if signal.cell.is_none() || b.is_zero(fraction) {
-        signal.cell = Some(cell);
+    let place = start.offset(fraction);
+    Signal {
+        cell: place.cell.or(Some(cell)),
+        g: g.unwrap_or(place.g),
+        ..place
     }
-    if let Some((change, sd)) = spread {
-        signal.g = change.map(|x| b.scale(x, sd));
-    }
-    signal
 }

@@ -2,15 +2,16 @@
 
 use super::{Bundle, Compiler, Lower};
 use crate::cpu::{Evaluator, Input, Scratch};
-use crate::ir::{Builder, FunctionRef, Module, Value};
+use crate::ir::{Builder, Float, FunctionRef, Module};
 use crate::moments::{Domain, Grid, Map, SIDE, Signal};
 use mipless_graph::Node;
 use std::sync::{Arc, LazyLock};
 
 /// Builds the components of a map from two numbers.
-type Build = dyn Fn(&mut Builder, &mut Module, [Value; 2]) -> Vec<Value> + Send + Sync;
+type Build =
+    dyn for<'b> Fn(&'b Builder, &mut Module, [Float<'b>; 2]) -> Vec<Float<'b>> + Send + Sync;
 
-impl Lower<'_> {
+impl<'b> Lower<'_, 'b> {
     /// A function of two signals, whatever their covariance: `build` gives its components, within
     /// `ranges`, of two numbers; it must build the same function each time. The function is sampled
     /// over `domain` when a table of its moments is first read.
@@ -20,11 +21,14 @@ impl Lower<'_> {
     pub fn map(
         &mut self,
         node: &Node,
-        [x, y]: [&Signal; 2],
+        [x, y]: [&Signal<'b>; 2],
         domain: Domain,
         ranges: &[[f32; 2]],
-        build: impl Fn(&mut Builder, &mut Module, [Value; 2]) -> Vec<Value> + Send + Sync + 'static,
-    ) -> Bundle {
+        build: impl for<'c> Fn(&'c Builder, &mut Module, [Float<'c>; 2]) -> Vec<Float<'c>>
+        + Send
+        + Sync
+        + 'static,
+    ) -> Bundle<'b> {
         let name = super::identifier(&node.name);
         let map = self.compiler.mapped(self.module, &node.name, |module| {
             let of = function(module, &name, &build);
@@ -58,10 +62,9 @@ impl Compiler<'_> {
 }
 
 fn function(module: &mut Module, name: &str, build: &Build) -> FunctionRef {
-    let mut b = Builder::new(format!("{name}_of"), "A function of two signals.");
-    let place = ["x", "y"].map(|name| b.param_f32(name));
-    let values = build(&mut b, module, place);
-    for (i, &value) in values.iter().enumerate() {
+    let b = &Builder::new(format!("{name}_of"), "A function of two signals.");
+    let place = ["x", "y"].map(|name| b.float_param(name));
+    for (i, value) in build(b, module, place).into_iter().enumerate() {
         b.result(format!("value_{i}"), value);
     }
     b.finish(module)

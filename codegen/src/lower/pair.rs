@@ -12,7 +12,7 @@
 
 use super::fusion::{Known, region};
 use super::shape::{self, Shape, measured};
-use super::{Arguments, Bundle, Compiler, Lower};
+use super::{Arguments, Bundle, Compiler, Lower, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
@@ -29,9 +29,9 @@ pub(super) const DEVIATIONS: f32 = 10.0;
 
 /// That a node is a function of two scalar signals alone.
 #[derive(Clone, Debug)]
-pub(super) struct Pair {
-    first: Entry,
-    second: Entry,
+pub(super) struct Pair<'b> {
+    first: Entry<'b>,
+    second: Entry<'b>,
     /// How many nodes between are not linear, at most.
     bends: u32,
     /// Whether no live parameter shapes it.
@@ -40,15 +40,15 @@ pub(super) struct Pair {
 
 /// A signal that a region is a function of.
 #[derive(Clone, Debug)]
-struct Entry {
+struct Entry<'b> {
     from: From,
-    signal: Rc<Signal>,
+    signal: Rc<Signal<'b>>,
     /// About the standard deviation of the process: regions are measured at it.
     deviation: f32,
 }
 
-impl Entry {
-    fn node(id: NodeId, signal: Rc<Signal>) -> Self {
+impl<'b> Entry<'b> {
+    fn node(id: NodeId, signal: Rc<Signal<'b>>) -> Self {
         Self {
             from: From::Node(id),
             deviation: extent(&signal) / DEVIATIONS,
@@ -67,38 +67,38 @@ enum From {
 
 /// That a node is T(X) + Z with unit weights.
 #[derive(Clone, Debug)]
-pub(super) struct Sum {
+pub(super) struct Sum<'b> {
     /// The node of T(X).
     term: NodeId,
     /// X.
-    of: Entry,
+    of: Entry<'b>,
     fixed: bool,
     /// The extent of T(X).
     extent: f32,
     /// Z.
-    rest: Rc<Signal>,
+    rest: Rc<Signal<'b>>,
     /// About the standard deviation of Z as a process.
     deviation: f32,
 }
 
-fn extent(signal: &Signal) -> f32 {
+fn extent(signal: &Signal<'_>) -> f32 {
     signal.range[1] - signal.range[0]
 }
 
-fn bounded(signal: &Signal) -> bool {
+fn bounded(signal: &Signal<'_>) -> bool {
     let [low, high] = signal.range;
     low.is_finite() && high.is_finite() && low < high
 }
 
-impl Lower<'_> {
+impl<'b> Lower<'_, 'b> {
     /// Records what the node, just lowered to `closed`, is a function of; its bundle by a map of two
     /// signals, where that is better than closing it.
     pub(super) fn fuse_pair(
         &mut self,
         index: usize,
         node: &Node,
-        closed: &[Signal],
-    ) -> Option<Bundle> {
+        closed: &[Signal<'b>],
+    ) -> Option<Bundle<'b>> {
         self.sums[index] = self.sum(node, closed);
         let before = self.pair(index, node)?;
         let bends = before.bends + u32::from(self.algebra.bent);
@@ -144,12 +144,12 @@ impl Lower<'_> {
     }
 
     /// The two signals that all varying inputs of a node are functions of.
-    fn pair(&self, index: usize, node: &Node) -> Option<Pair> {
-        let mut entries: Vec<Entry> = Vec::new();
+    fn pair(&self, index: usize, node: &Node) -> Option<Pair<'b>> {
+        let mut entries: Vec<Entry<'b>> = Vec::new();
         // The inputs themselves, where they are functions of too many signals.
-        let mut direct: Vec<Entry> = Vec::new();
+        let mut direct: Vec<Entry<'b>> = Vec::new();
         let (mut bends, mut fixed) = (0, true);
-        let mut insert = |entry: &Entry| {
+        let mut insert = |entry: &Entry<'b>| {
             if !entries.iter().any(|known| known.from == entry.from) {
                 entries.push(entry.clone());
             }
@@ -167,7 +167,7 @@ impl Lower<'_> {
             };
             let bundle = self.bundles[id.index()].as_ref()?;
             if let [signal] = &bundle[..]
-                && !signal.is_certain(&self.algebra.b)
+                && !signal.is_certain()
                 && !direct.iter().any(|known| known.from == From::Node(id))
             {
                 direct.push(Entry::node(id, Rc::new(signal.clone())));
@@ -189,13 +189,13 @@ impl Lower<'_> {
                 Known::Opaque => opaque = true,
             }
         }
-        let pair = |[first, second]: [Entry; 2], bends, fixed| Pair {
+        let pair = |[first, second]: [Entry<'b>; 2], bends, fixed| Pair {
             first,
             second,
             bends,
             fixed,
         };
-        match <[Entry; 2]>::try_from(entries) {
+        match <[Entry<'b>; 2]>::try_from(entries) {
             // The rest of a sum is only known together with the term's own signal.
             Ok(entries) if !opaque && matches!(entries[0].from, From::Node(_)) => {
                 Some(pair(entries, bends, fixed))
@@ -213,14 +213,14 @@ impl Lower<'_> {
                     };
                     return Some(pair([sum.of.clone(), rest], 1, sum.fixed));
                 }
-                let entries = <[Entry; 2]>::try_from(direct).ok()?;
+                let entries = <[Entry<'b>; 2]>::try_from(direct).ok()?;
                 Some(pair(entries, 0, fixed))
             }
         }
     }
 
     /// The node as a term and a rest, if it is the plain sum of its two varying inputs.
-    fn sum(&mut self, node: &Node, closed: &[Signal]) -> Option<Sum> {
+    fn sum(&self, node: &Node, closed: &[Signal<'b>]) -> Option<Sum<'b>> {
         let [out] = closed else { return None };
         if self.algebra.bent || out.cell.is_some() {
             return None;
@@ -243,7 +243,7 @@ impl Lower<'_> {
         };
         let (x, y) = (of(p)?, of(q)?);
         // Equal definitions are one value: the node added, and did nothing else.
-        if self.algebra.b.add(x.mean, y.mean) != out.mean {
+        if x.mean + y.mean != out.mean {
             return None;
         }
         let candidates = [(p, &x, &y), (q, &y, &x)].map(|(id, signal, other)| {
@@ -267,20 +267,25 @@ impl Lower<'_> {
         if let Some(more) = more {
             // Terms of different sources add in squares.
             sum.deviation = sum.deviation.hypot(extent(more) / DEVIATIONS);
-            sum.rest = Rc::new(sum.rest.add(&mut self.algebra.b, more));
+            sum.rest = Rc::new(&*sum.rest + more);
         }
         Some(sum)
     }
 }
 
 /// Lowers the region of a pair into `lower`, whose entries are these signals.
-fn lower_region(lower: &mut Lower<'_>, index: usize, pair: &Pair, [x, y]: [Signal; 2]) -> Bundle {
+fn lower_region<'b>(
+    lower: &mut Lower<'_, 'b>,
+    index: usize,
+    pair: &Pair<'_>,
+    [x, y]: [Signal<'b>; 2],
+) -> Bundle<'b> {
     let compiler = lower.compiler;
     let From::Node(first) = pair.first.from else {
         panic!("a pair begins with a node")
     };
     lower.bundles[first.index()] = Some(vec![x]);
-    let run = |lower: &mut Lower<'_>, to: usize, entries: &[NodeId]| {
+    let run = |lower: &mut Lower<'_, 'b>, to: usize, entries: &[NodeId]| {
         for node in region(compiler, to, entries) {
             if lower.bundles[node].is_none() {
                 let node_of = &compiler.graph.nodes[node];
@@ -296,9 +301,8 @@ fn lower_region(lower: &mut Lower<'_>, index: usize, pair: &Pair, [x, y]: [Signa
         }
         From::Rest { sum, term } => {
             run(lower, term.index(), &[first]);
-            let term = lower.bundles[term.index()].as_ref().expect("just lowered")[0].clone();
-            let whole = term.add(&mut lower.algebra.b, &y);
-            lower.bundles[sum.index()] = Some(vec![whole]);
+            let term = &lower.bundles[term.index()].as_ref().expect("just lowered")[0];
+            lower.bundles[sum.index()] = Some(vec![term + &y]);
             sum
         }
     };
@@ -313,26 +317,17 @@ fn function(
     compiler: &Compiler<'_>,
     module: &mut Module,
     index: usize,
-    pair: &Pair,
+    pair: &Pair<'_>,
     mode: Mode,
-    entries: impl FnOnce(&mut Builder) -> [Signal; 2],
+    entries: impl for<'b> FnOnce(&'b Builder) -> [Signal<'b>; 2],
 ) -> FunctionRef {
     let name = super::identifier(&compiler.graph.nodes[index].name);
-    let mut b = Builder::new(format!("{name}_of"), "A function of two signals.");
-    let entries = entries(&mut b);
-    let unused = entries[0].mean;
-    let arguments = Arguments {
-        footprint: [unused; 8],
-        position: None,
-        parameters: Vec::new(),
-    };
+    let b = &Builder::new(format!("{name}_of"), "A function of two signals.");
+    let entries = entries(b);
+    let arguments = Arguments::without_place(b, Vec::new());
     let mut lower = Lower::with(compiler, module, Algebra::new(b, mode), arguments);
     let bundle = lower_region(&mut lower, index, pair, entries);
-    let mut b = lower.algebra.b;
-    for (i, signal) in bundle.iter().enumerate() {
-        let value = signal.flat_mean(&mut b);
-        b.result(format!("value_{i}"), value);
-    }
+    value_results(b, &bundle);
     b.finish(module)
 }
 
@@ -340,18 +335,15 @@ fn point_function(
     compiler: &Compiler<'_>,
     module: &mut Module,
     index: usize,
-    pair: &Pair,
+    pair: &Pair<'_>,
 ) -> FunctionRef {
     function(compiler, module, index, pair, Mode::Point, |b| {
-        ["x", "y"].map(|name| {
-            let x = b.param_f32(name);
-            Signal::certain(b, x)
-        })
+        ["x", "y"].map(|name| Signal::certain(b.float_param(name)))
     })
 }
 
 /// All that the region's function and its entries depend on.
-fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> Option<Shape> {
+fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair<'_>) -> Option<Shape> {
     let From::Node(first) = pair.first.from else {
         panic!("a pair begins with a node")
     };
@@ -376,7 +368,7 @@ fn shape(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> Option<Shape> {
 
 /// Whether the closed form of the region is off by more than [`TOLERANCE`] under one of a few
 /// Gaussians: the whole process, and footprints that have removed half of its deviation.
-fn gains(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> bool {
+fn gains(compiler: &Compiler<'_>, index: usize, pair: &Pair<'_>) -> bool {
     let alone = compiler.with_options(compiler.options);
     let mut point = Module::default();
     point_function(&alone, &mut point, index, pair);
@@ -384,8 +376,8 @@ fn gains(compiler: &Compiler<'_>, index: usize, pair: &Pair) -> bool {
     let mut closed = Module::default();
     let ranges = [&pair.first, &pair.second].map(|entry| entry.signal.range);
     function(&alone, &mut closed, index, pair, Mode::Local, |b| {
-        let [x, sd_x, y, sd_y] = ["x", "sd_x", "y", "sd_y"].map(|name| b.param_f32(name));
-        let mut signals = [x, y].map(|mean| Signal::certain(b, mean));
+        let [x, sd_x, y, sd_y] = ["x", "sd_x", "y", "sd_y"].map(|name| b.float_param(name));
+        let mut signals = [x, y].map(Signal::certain);
         signals[0].g[0] = sd_x;
         signals[1].g[1] = sd_y;
         let [x, y] = signals;

@@ -1,76 +1,116 @@
-//! The places among the arguments of an entry, with footprints that are finite.
+//! Where a pixel is: the footprint, and the position in space, as arguments.
 
-use super::Arguments;
-use super::symbols::reads_position;
-use crate::ir::{Builder, FOOTPRINT, Value};
-use mipless_graph::Graph;
-use std::ops::Range;
+use crate::ir::{Bool, Builder, Float, Int, Scalar, Scalars, Type};
+use std::array;
 
 /// The largest change of texture coordinates per pixel that is told apart from an infinite one.
 const LARGEST_FOOTPRINT: f32 = 1e9;
 
-/// Where among the arguments a place stands: cells, fractions, and the changes of all axes from a
-/// pixel to the next one to the right, and to the one below.
+/// A place in as many axes, and how it changes from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    first: usize,
-    pub(super) axes: usize,
+pub(super) struct Place<'b, const AXES: usize> {
+    /// The integer parts.
+    pub(super) cell: [Int<'b>; AXES],
+    /// The rest.
+    pub(super) fraction: [Float<'b>; AXES],
+    /// The changes to the next pixel to the right.
+    pub(super) right: [Float<'b>; AXES],
+    /// The changes to the next pixel below.
+    pub(super) down: [Float<'b>; AXES],
 }
 
-impl Place {
-    pub(super) fn cell(self, axis: usize) -> usize {
-        self.first + axis
+impl<'b, const AXES: usize> Place<'b, AXES> {
+    /// The parameters of these names, in the order of the fields.
+    pub(super) fn declare(b: &'b Builder, names: &[(&str, Type)]) -> Self {
+        let mut names = names.iter().map(|(name, _)| *name);
+        let mut next = || names.next().expect("a name for each parameter");
+        Self {
+            cell: array::from_fn(|_| b.int_param(next())),
+            fraction: array::from_fn(|_| b.float_param(next())),
+            right: array::from_fn(|_| b.float_param(next())),
+            down: array::from_fn(|_| b.float_param(next())),
+        }
     }
 
-    pub(super) fn fraction(self, axis: usize) -> usize {
-        self.first + self.axes + axis
+    /// The origin without a footprint, for what reads neither.
+    pub(super) fn origin(b: &'b Builder) -> Self {
+        let zeros = [b.float(0.0); AXES];
+        Self {
+            cell: [b.int(0); AXES],
+            fraction: zeros,
+            right: zeros,
+            down: zeros,
+        }
     }
 
-    /// Of all axes to the right, then of all axes down.
-    pub(super) fn changes(self) -> Range<usize> {
-        let first = self.first + 2 * self.axes;
-        first..first + 2 * self.axes
+    /// Each change through `f`.
+    pub(super) fn with_changes(self, f: impl Fn(Float<'b>) -> Float<'b>) -> Self {
+        Self {
+            right: self.right.map(&f),
+            down: self.down.map(&f),
+            ..self
+        }
+    }
+
+    /// With a footprint that is finite: one that is not is taken for the largest, whose filtered values
+    /// are the far field's.
+    pub(super) fn finite(self) -> Self {
+        let within = |x: Float<'b>| x.abs().lt(LARGEST_FOOTPRINT);
+        let mut regular: Bool<'b> = self.cell[0].builder().literal(true);
+        for change in self.right.into_iter().chain(self.down) {
+            regular = regular & within(change);
+        }
+        // The first axis changes to the right, the second one down.
+        let far = |changes: [Float<'b>; AXES], along: usize| {
+            array::from_fn(|axis| {
+                let far = if axis == along {
+                    LARGEST_FOOTPRINT
+                } else {
+                    0.0
+                };
+                regular.select(changes[axis], far)
+            })
+        };
+        Self {
+            cell: self.cell,
+            fraction: self.fraction.map(|x| within(x).select(x, 0.0)),
+            right: far(self.right, 0),
+            down: far(self.down, 1),
+        }
+    }
+
+    /// Moved by (x, y) pixels. Pixels may be hundreds of units long: their integer parts join the cell,
+    /// and a product with a number of 12 significant bits is made of two exact ones.
+    pub(super) fn moved(mut self, pixels: [Float<'b>; 2]) -> Self {
+        for axis in 0..AXES {
+            for (pixels, length) in pixels.into_iter().zip([self.right[axis], self.down[axis]]) {
+                let high = length.high();
+                for part in [high, length - high] {
+                    let step = pixels * part;
+                    let whole = step.floor();
+                    self.cell[axis] += whole.to_int();
+                    self.fraction[axis] += step - whole;
+                }
+            }
+        }
+        self
     }
 }
 
-/// The places among the arguments: in texture space, and in space if the graph reads it.
-pub(super) fn places(graph: &Graph) -> impl Iterator<Item = Place> {
-    let space = Place {
-        first: FOOTPRINT.len(),
-        axes: 3,
-    };
-    let texture = Place { first: 0, axes: 2 };
-    std::iter::once(texture).chain(reads_position(graph).then_some(space))
-}
+impl<'b, const AXES: usize> Scalars<'b> for Place<'b, AXES> {
+    fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
+        self.cell.each(visit);
+        [self.fraction, self.right, self.down].each(visit);
+    }
 
-/// The arguments with a footprint that is finite: one that is not is taken for the largest, whose
-/// filtered values are the far field's.
-pub(super) fn finite(b: &mut Builder, graph: &Graph, arguments: &Arguments) -> Vec<Value> {
-    let mut all = arguments.all();
-    let limit = b.f32(LARGEST_FOOTPRINT);
-    let zero = b.f32(0.0);
-    for place in places(graph) {
-        let mut regular = b.bool(true);
-        for &value in &all[place.changes()] {
-            let magnitude = b.abs(value);
-            let within = b.lt(magnitude, limit);
-            regular = b.and(regular, within);
-        }
-        for (i, at) in place.changes().enumerate() {
-            // The first axis changes to the right, the second one down.
-            let far = if i == 0 || i == place.axes + 1 {
-                limit
-            } else {
-                zero
-            };
-            all[at] = b.select(regular, all[at], far);
-        }
-        for axis in 0..place.axes {
-            let value = &mut all[place.fraction(axis)];
-            let magnitude = b.abs(*value);
-            let within = b.lt(magnitude, limit);
-            *value = b.select(within, *value, zero);
+    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
+        let cell = self.cell.replaced(next);
+        let [fraction, right, down] = [self.fraction, self.right, self.down].replaced(next);
+        Self {
+            cell,
+            fraction,
+            right,
+            down,
         }
     }
-    all
 }

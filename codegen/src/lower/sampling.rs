@@ -1,11 +1,10 @@
 //! Methods that evaluate the graph several times in a pixel: a fold over one function of it.
 
-use super::finish::{finish, guarded};
+use super::finish::{finish, guarded, result_names};
 use super::function::{footprint_function, graph_function};
-use super::place::{finite, places};
 use super::{Arguments, Compiler, Options, PixelFilter};
-use crate::float::Float;
-use crate::ir::{Builder, Module, Type as Scalar, Value};
+use crate::float::Float as _;
+use crate::ir::{Builder, Float, Module, Uint};
 use crate::moments::Mode;
 use std::iter;
 use std::sync::LazyLock;
@@ -27,101 +26,47 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
 
     let table = module.table("sample_offsets", offsets(compiler.options.filter));
 
-    let mut b = Builder::new("sample", "One more sample.");
-    let index = b.param("index", Scalar::U32);
-    let state: Vec<Value> = (0..state_length)
-        .map(|i| b.param_f32(format!("state_{i}")))
+    // The state: running means, then the sums of squared deviations.
+    let b = &Builder::new("sample", "One more sample.");
+    let index = b.uint_param("index");
+    let state: Vec<Float<'_>> = (0..state_length)
+        .map(|i| b.float_param(format!("state_{i}")))
         .collect();
-    let (shift_x, shift_y) = (
-        b.param("shift_x", Scalar::U32),
-        b.param("shift_y", Scalar::U32),
-    );
-    let arguments = Arguments::declare(&mut b, compiler.graph);
-    let [x, y] = offset(&mut b, table, index, [shift_x, shift_y]);
-    let mut all = arguments.all();
-    displace(&mut b, compiler, &mut all, [x, y]);
-    for place in places(compiler.graph) {
-        all[place.changes()].fill(b.f32(0.0));
-    }
-    let values = b.call(&point, &all);
-    let number = b.float_u(index);
-    let number = b.offset(number, 1.0);
+    let shift = ["shift_x", "shift_y"].map(|name| b.uint_param(name));
+    let place = Arguments::declare(b, compiler.graph).moved(offset(table, index, shift));
+    let values = b.call(&point, place.at_point());
+    let number = index.to_float() + 1.0;
     let mut squares = Vec::new();
     for (i, &value) in values.iter().enumerate() {
-        let deviation = b.sub(value, state[i]);
-        let part = b.div(deviation, number);
-        let mean = b.add(state[i], part);
+        let deviation = value - state[i];
+        let mean = state[i] + deviation / number;
         b.result(format!("state_{i}"), mean);
-        if moments {
-            let after = b.sub(value, mean);
-            let square = b.mul(deviation, after);
-            squares.push(b.add(state[outputs + i], square));
-        }
+        squares.extend(moments.then(|| state[outputs + i] + deviation * (value - mean)));
     }
     for (i, sum) in squares.into_iter().enumerate() {
         b.result(format!("state_{}", outputs + i), sum);
     }
     let sample = b.finish(module);
 
-    let mut b = Builder::new(name, "The texture over a footprint.");
-    let arguments = Arguments::declare(&mut b, compiler.graph);
-    let arguments = finite(&mut b, compiler.graph, &arguments);
-    let [cell_x, cell_y] = [b.cast_u(arguments[0]), b.cast_u(arguments[1])];
-    let [u, v] = [b.bits(arguments[2]), b.bits(arguments[3])];
-    let mut hash = b.u32(compiler.options.seed ^ 0x9e37_79b9);
-    for word in [cell_x, cell_y, u, v] {
-        hash = b.xor_u(hash, word);
-        hash = b.scramble(hash);
+    let b = &Builder::new(name, "The texture over a footprint.");
+    let arguments = Arguments::declare(b, compiler.graph).finite();
+    let ([cell_x, cell_y], [u, v]) = (arguments.footprint.cell, arguments.footprint.fraction);
+    let mut hash = b.uint(compiler.options.seed ^ 0x9e37_79b9);
+    for word in [cell_x.to_uint(), cell_y.to_uint(), u.bits(), v.bits()] {
+        hash = (hash ^ word).scramble();
     }
-    let other = b.u32(0x68bc_21eb);
-    let second = b.xor_u(hash, other);
-    let second = b.scramble(second);
-    let zero = b.f32(0.0);
-    let count = b.u32(samples);
-    let mut captures = vec![hash, second];
-    captures.extend(&arguments);
-    let state = b.fold(&sample, count, &vec![zero; state_length], &captures);
-    let names: Vec<String> = module
-        .function(point.id)
-        .results
-        .iter()
-        .map(|(name, _)| name.clone())
-        .collect();
+    let second = (hash ^ 0x68bc_21eb).scramble();
+    let start = vec![b.float(0.0); state_length];
+    let state = b.fold(&sample, b.uint(samples), start, ([hash, second], arguments));
+    let names = result_names(module, &point);
     for (name, &value) in names.iter().zip(&state) {
-        let value = guarded(&mut b, value);
-        b.result(name.clone(), value);
+        b.result(name.clone(), guarded(value));
     }
     for (name, &sum) in names.iter().zip(&state[outputs.min(state.len())..]) {
-        let variance = b.scale(sum, 1.0 / (samples.max(2) - 1) as f32);
-        let variance = guarded(&mut b, variance);
-        b.result(format!("{name}_variance"), variance);
+        let variance = sum * (1.0 / (samples.max(2) - 1) as f32);
+        b.result(format!("{name}_variance"), guarded(variance));
     }
     b.finish(module);
-}
-
-/// Moves the position of a graph's arguments by (x, y) pixels. Pixels may be hundreds of units long:
-/// their integer parts join the cell, and a product with a number of 12 significant bits is made of
-/// two exact ones.
-fn displace(b: &mut Builder, compiler: &Compiler<'_>, all: &mut [Value], pixels: [Value; 2]) {
-    for place in places(compiler.graph) {
-        let right = place.changes().start;
-        for axis in 0..place.axes {
-            let (cell, rest) = (place.cell(axis), place.fraction(axis));
-            let changes = [all[right + axis], all[right + place.axes + axis]];
-            for (&pixels, length) in pixels.iter().zip(changes) {
-                let high = b.high(length);
-                let low = b.sub(length, high);
-                for part in [high, low] {
-                    let step = b.mul(pixels, part);
-                    let whole = b.floor(step);
-                    let fraction = b.sub(step, whole);
-                    let whole = b.trunc_i(whole);
-                    all[cell] = b.add_i(all[cell], whole);
-                    all[rest] = b.add(all[rest], fraction);
-                }
-            }
-        }
-    }
 }
 
 /// Bits of a sample's place along one axis. With so few, and 12 significant ones of the offset, a
@@ -129,15 +74,11 @@ fn displace(b: &mut Builder, compiler: &Compiler<'_>, all: &mut [Value], pixels:
 const PLACES: u32 = 12;
 
 /// The offset of a sample inside the pixel, in pixels; `offsets` is the table of [`offsets`].
-fn offset(b: &mut Builder, offsets: u32, index: Value, shift: [Value; 2]) -> [Value; 2] {
+fn offset<'b>(offsets: u32, index: Uint<'b>, [x, y]: [Uint<'b>; 2]) -> [Float<'b>; 2] {
     // 2³² divided by the plastic number and by its square.
-    let uniform = [0xc13f_a9a9u32, 0x91e1_0da5].map(|step| b.u32(step));
-    [0, 1].map(|i| {
-        let walked = b.mul_u(index, uniform[i]);
-        let place = b.add_u(walked, shift[i]);
-        let by = b.u32(32 - PLACES);
-        let place = b.shr_u(place, by);
-        b.load(offsets, place)
+    [(0xc13f_a9a9, x), (0x91e1_0da5, y)].map(|(step, shift): (u32, Uint<'b>)| {
+        let place = (index * step + shift) >> (32 - PLACES);
+        index.builder().load(offsets, place)
     })
 }
 
@@ -226,12 +167,9 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
     let (nodes, largest, scatter) = rule(k);
     let s = compiler.options.filter.sd();
     let (quad, _) = graph_function(compiler, module, Mode::Quad, "quad");
-    let size = footprint_function(compiler, module, "size", |b, footprints| {
-        let mut most = footprints[0];
-        for &footprint in &footprints[1..] {
-            most = b.max(most, footprint);
-        }
-        most
+    let size = footprint_function(compiler, module, "size", |footprints| {
+        let largest = footprints.iter().copied().reduce(|most, one| most.max(one));
+        largest.expect("there are footprints").into()
     });
     let moments = compiler.options.moments;
     let outputs = if moments {
@@ -250,43 +188,25 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
 
     // The state: running weighted means, then the weighted sums of squared deviations and of
     // variances (West 1979): no difference of second moments.
-    let mut b = Builder::new("part", "One more part of the footprint.");
-    let index = b.param("index", Scalar::U32);
+    let b = &Builder::new("part", "One more part of the footprint.");
+    let index = b.uint_param("index");
     let length = if moments { 2 * outputs } else { outputs };
-    let state: Vec<Value> = (0..length)
-        .map(|i| b.param_f32(format!("state_{i}")))
+    let state: Vec<Float<'_>> = (0..length)
+        .map(|i| b.float_param(format!("state_{i}")))
         .collect();
-    let (far, near) = (b.param_f32("root_share"), b.param_f32("root_rest"));
-    let arguments = Arguments::declare(&mut b, compiler.graph);
-    let four = b.u32(4);
-    let first = b.mul_u(index, four);
-    let node: [Value; 4] = [0u32, 1, 2, 3].map(|i| {
-        let i = b.u32(i);
-        let at = b.add_u(first, i);
-        b.load(table, at)
-    });
-    let shift = b.scale(far, s);
-    let (x, y) = (b.mul(node[0], shift), b.mul(node[1], shift));
-    let mut all = arguments.all();
-    displace(&mut b, compiler, &mut all, [x, y]);
-    for place in places(compiler.graph) {
-        for value in &mut all[place.changes()] {
-            *value = b.mul(*value, near);
-        }
-    }
-    let values = b.call(&quad, &all);
+    let [far, near] = ["root_share", "root_rest"].map(|name| b.float_param(name));
+    let [x, y, weight, share] = [0u32, 1, 2, 3].map(|i| b.load(table, index * 4 + i));
+    let shift = far * s;
+    let place = Arguments::declare(b, compiler.graph).moved([x * shift, y * shift]);
+    let values = b.call(&quad, place.with_changes(|change| change * near));
     let mut spreads = Vec::new();
     for i in 0..outputs {
-        let deviation = b.sub(values[i], state[i]);
-        let step = b.mul(node[3], deviation);
-        let mean = b.add(state[i], step);
+        let deviation = values[i] - state[i];
+        let mean = state[i] + share * deviation;
         b.result(format!("state_{i}"), mean);
         if moments {
-            let after = b.sub(values[i], mean);
-            let square = b.mul(deviation, after);
-            let spread = b.add(square, values[outputs + i]);
-            let part = b.mul(node[2], spread);
-            spreads.push(b.add(state[outputs + i], part));
+            let spread = deviation * (values[i] - mean) + values[outputs + i];
+            spreads.push(state[outputs + i] + weight * spread);
         }
     }
     for (i, spread) in spreads.into_iter().enumerate() {
@@ -294,30 +214,20 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
     }
     let part = b.finish(module);
 
-    let mut b = Builder::new(name, "The texture over a footprint.");
-    let arguments = Arguments::declare(&mut b, compiler.graph);
-    let arguments = finite(&mut b, compiler.graph, &arguments);
+    let b = &Builder::new(name, "The texture over a footprint.");
+    let arguments = Arguments::declare(b, compiler.graph).finite();
     let share = match &size {
-        None => b.f32(largest),
+        None => b.float(largest),
         Some(size) => {
             let size = b.call(size, &arguments)[0];
-            let size = b.offset(size, 1e-6);
-            let scatter = b.f32(scatter);
-            let ratio = b.div(scatter, size);
-            let square = b.square(ratio);
-            let most = b.f32(largest);
-            b.min(square, most)
+            (scatter / (size + 1e-6)).square().min(largest)
         }
     };
-    let one = b.f32(1.0);
-    let rest = b.sub(one, share);
-    let (far, near) = (b.sqrt(share), b.sqrt(rest));
-    let zero = b.f32(0.0);
-    let count = b.u32(nodes.len() as u32);
-    let mut captures = vec![far, near];
-    captures.extend(&arguments);
-    let state = b.fold(&part, count, &vec![zero; length], &captures);
-    finish(module, b, &quad, &state);
+    let roots = [share.sqrt(), (1.0 - share).sqrt()];
+    let count = b.uint(nodes.len() as u32);
+    let start = vec![b.float(0.0); length];
+    let state = b.fold(&part, count, start, (roots, arguments));
+    finish(module, b, &quad, state);
 }
 
 #[cfg(test)]

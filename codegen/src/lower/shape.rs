@@ -28,9 +28,14 @@ pub(super) fn shape(compiler: &Compiler<'_>, entries: &[NodeId], nodes: &[usize]
     words.push(nodes.len() as u32);
     for &index in nodes {
         let node = &compiler.graph.nodes[index];
-        // Catalogues differ: a definition is the code that lowers it.
-        let code = compiler.catalogue[node.definition].lower as usize;
-        words.extend([code as u32, (code as u64 >> 32) as u32, node.ty as u32]);
+        // Catalogues differ: a definition is its spec, and the code that lowers it, which several
+        // nodes of a family may share.
+        let code = compiler.catalogue[node.definition].lower as usize as u64;
+        let spec = std::ptr::from_ref(node.spec) as usize as u64;
+        for word in [code, spec] {
+            words.extend([word as u32, (word >> 32) as u32]);
+        }
+        words.push(node.ty as u32);
         for input in &node.inputs {
             words.push(input.ty as u32);
             match &input.source {

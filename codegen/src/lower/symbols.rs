@@ -1,7 +1,6 @@
 //! Who reads what, and who carries which symbol.
 
 use super::{Bundle, Varying};
-use crate::ir::Builder;
 use crate::moments::{Signal, Symbol};
 use mipless_graph::{Behaviour, Graph, Input, OutputType, Source, Type};
 use rustc_hash::FxHashMap;
@@ -81,16 +80,16 @@ pub(super) struct Carriers {
 type Symbols = SmallVec<[Symbol; 16]>;
 
 /// The symbols that a bundle's signals carry.
-fn carried(bundle: &Bundle) -> Symbols {
+fn carried(bundle: &[Signal<'_>]) -> Symbols {
     distinct(bundle, false)
 }
 
 /// The same with those of their second Hermite polynomials, which a transfer of them carries.
-fn held(bundle: &Bundle) -> Symbols {
+fn held(bundle: &[Signal<'_>]) -> Symbols {
     distinct(bundle, true)
 }
 
-fn distinct(bundle: &[Signal], hermites: bool) -> Symbols {
+fn distinct(bundle: &[Signal<'_>], hermites: bool) -> Symbols {
     let mut all = Symbols::new();
     for signal in bundle {
         for &(symbol, _) in &signal.shared {
@@ -106,7 +105,7 @@ fn distinct(bundle: &[Signal], hermites: bool) -> Symbols {
 }
 
 impl Carriers {
-    pub(super) fn born(&mut self, bundle: &Bundle) {
+    pub(super) fn born(&mut self, bundle: &[Signal<'_>]) {
         for symbol in held(bundle) {
             *self.counts.entry(symbol).or_default() += 1;
         }
@@ -117,7 +116,7 @@ impl Carriers {
         *self.counts.entry(symbol).or_default() += 1;
     }
 
-    pub(super) fn died(&mut self, bundle: &Bundle) {
+    pub(super) fn died(&mut self, bundle: &[Signal<'_>]) {
         for symbol in held(bundle) {
             if let Some(count) = self.counts.get_mut(&symbol) {
                 *count -= 1;
@@ -128,13 +127,7 @@ impl Carriers {
     /// Folds into private variance what only this bundle carries (and, where its components are
     /// `crossed` later, only one of them), and whatever exceeds the limit. Of the symbols from `kept`
     /// on, which several nodes are about to read, it makes one.
-    pub(super) fn retire(
-        &mut self,
-        b: &mut Builder,
-        bundle: &mut Bundle,
-        kept: Symbol,
-        crossed: bool,
-    ) {
+    pub(super) fn retire(&mut self, bundle: &mut Bundle<'_>, kept: Symbol, crossed: bool) {
         let mut merged = Vec::new();
         for symbol in carried(bundle) {
             let only = self.counts.get(&symbol) == Some(&1);
@@ -145,7 +138,7 @@ impl Carriers {
             if only && (holders == 1 || !crossed) {
                 if symbol < kept {
                     for signal in bundle.iter_mut() {
-                        signal.retire(b, symbol);
+                        signal.retire(symbol);
                     }
                     self.counts.remove(&symbol);
                 } else {
@@ -154,10 +147,10 @@ impl Carriers {
             }
         }
         for signal in bundle.iter_mut() {
-            signal.merge(b, &merged);
+            signal.merge(&merged);
             while signal.shared.len() > MOST {
                 let oldest = signal.shared[0].0;
-                signal.retire(b, oldest);
+                signal.retire(oldest);
             }
         }
     }

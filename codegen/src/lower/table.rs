@@ -7,7 +7,7 @@ use mipless_graph::{Node, Picture};
 use std::any::Any;
 use std::sync::{Arc, LazyLock};
 
-impl Lower<'_> {
+impl Lower<'_, '_> {
     /// The picture that a uniform file name stands for; `None` where the name is empty.
     pub fn picture(&self, node: &Node, port: &str) -> Option<Arc<Picture>> {
         let name = self.choice(node, port);
@@ -87,23 +87,13 @@ impl Lower<'_> {
                 (0..=INTERVALS as u32).map(&value).collect()
             })
         });
-        let mut b = Builder::new(format!("{}_of", identifier(name)), "A function by a table.");
-        let x = b.param_f32("x");
-        let inside = b.clamp(x, low, high);
-        let from_low = b.offset(inside, -low);
-        let place = b.scale(from_low, INTERVALS as f32 / (high - low));
-        let left = b.floor(place);
-        let left = b.clamp(left, 0.0, (INTERVALS - 1) as f32);
-        let share = b.sub(place, left);
-        let index = b.trunc_i(left);
-        let index = b.cast_u(index);
-        let one = b.u32(1);
-        let next = b.add_u(index, one);
-        let (from, to) = (b.load(values, index), b.load(values, next));
-        let difference = b.sub(to, from);
-        let part = b.mul(difference, share);
-        let value = b.add(from, part);
-        b.result("value", value);
+        let b = &Builder::new(format!("{}_of", identifier(name)), "A function by a table.");
+        let inside = b.float_param("x").clamp(low, high);
+        let place = (inside + -low) * (INTERVALS as f32 / (high - low));
+        let left = place.floor().clamp(0.0, (INTERVALS - 1) as f32);
+        let index = left.to_int().to_uint();
+        let (from, to) = (b.load(values, index), b.load(values, index + 1));
+        b.result("value", from + (to - from) * (place - left));
         let of = b.finish(self.module);
         let branch = Branch::of_numbers(self.module, &identifier(name), &of, 1);
         let samples: Samples = Arc::new(LazyLock::new(Box::new(move || {

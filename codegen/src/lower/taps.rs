@@ -10,9 +10,9 @@
 use super::fusion::{Chain, region};
 use super::pair::{DEVIATIONS, TOLERANCE};
 use super::shape::{measured, shape};
-use super::{Arguments, Bundle, Compiler, Lower, Varying};
+use super::{Arguments, Bundle, Compiler, Lower, Varying, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
-use crate::ir::{Builder, FunctionRef, Module};
+use crate::ir::{Builder, FunctionRef, Module, Vec2};
 use crate::moments::{Algebra, Mode, SIDES, Signal, Tapped};
 use mipless_graph::{Behaviour, NodeId, Type};
 
@@ -28,11 +28,11 @@ enum Setting {
     Most,
 }
 
-impl Lower<'_> {
+impl<'b> Lower<'_, 'b> {
     /// Whether a signal that is affine in the entry of its chain, but shaped by parameters, can be
     /// the entry of tables itself: its bounds over all parameters are not much wider than at their
     /// defaults.
-    pub(super) fn enters(&mut self, index: usize, chain: &Chain, closed: &[Signal]) -> bool {
+    pub(super) fn enters(&self, index: usize, chain: &Chain<'b>, closed: &[Signal<'b>]) -> bool {
         let ([signal], Some([low, high])) = (closed, chain.domain()) else {
             return false;
         };
@@ -51,9 +51,9 @@ impl Lower<'_> {
     pub(super) fn tapped(
         &mut self,
         index: usize,
-        closed: &[Signal],
-        chain: &Chain,
-    ) -> Option<Bundle> {
+        closed: &[Signal<'b>],
+        chain: &Chain<'b>,
+    ) -> Option<Bundle<'b>> {
         let compiler = self.compiler;
         let scales = scales(compiler, chain)?;
         if !(1..=4).contains(&closed.len()) {
@@ -90,7 +90,7 @@ impl Lower<'_> {
 
 /// Centres and standard deviations of the entry as a process: from its range, or a few that noises of
 /// a live amplitude have.
-fn scales(compiler: &Compiler<'_>, chain: &Chain) -> Option<Vec<[f32; 2]>> {
+fn scales(compiler: &Compiler<'_>, chain: &Chain<'_>) -> Option<Vec<[f32; 2]>> {
     if chain.period.is_some() {
         return None;
     }
@@ -103,7 +103,12 @@ fn scales(compiler: &Compiler<'_>, chain: &Chain) -> Option<Vec<[f32; 2]>> {
 }
 
 /// Lowers the region into `lower`, whose entry is this signal.
-fn lowered(lower: &mut Lower<'_>, index: usize, entry: NodeId, x: Signal) -> Bundle {
+fn lowered<'b>(
+    lower: &mut Lower<'_, 'b>,
+    index: usize,
+    entry: NodeId,
+    x: Signal<'b>,
+) -> Bundle<'b> {
     let compiler = lower.compiler;
     lower.bundles[entry.index()] = Some(vec![x]);
     // Signals of the region that are read twice keep what they share.
@@ -119,49 +124,36 @@ fn lowered(lower: &mut Lower<'_>, index: usize, entry: NodeId, x: Signal) -> Bun
 /// The region's values at a value of its entry, for these parameters.
 fn point(compiler: &Compiler<'_>, module: &mut Module, index: usize, entry: NodeId) -> FunctionRef {
     let name = super::identifier(&compiler.graph.nodes[index].name);
-    let mut b = Builder::new(format!("{name}_of"), "A function of one signal.");
-    let x = b.param_f32("x");
-    let argument = Signal::certain(&mut b, x);
-    let arguments = Arguments {
-        footprint: [x; 8],
-        position: None,
-        parameters: Arguments::parameters(&mut b, compiler.graph),
-    };
+    let b = &Builder::new(format!("{name}_of"), "A function of one signal.");
+    let argument = Signal::certain(b.float_param("x"));
+    let arguments = Arguments::without_place(b, Arguments::parameters(b, compiler.graph));
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
-    let bundle = lowered(&mut lower, index, entry, argument);
-    let mut b = lower.algebra.b;
-    for (i, signal) in bundle.iter().enumerate() {
-        let value = signal.flat_mean(&mut b);
-        b.result(format!("value_{i}"), value);
-    }
+    value_results(b, &lowered(&mut lower, index, entry, argument));
     b.finish(module)
 }
 
 /// The region closed node by node over a Gaussian of its entry: of each component the mean, the
 /// slope, and the variance beyond it.
-fn part(compiler: &Compiler<'_>, module: &mut Module, index: usize, chain: &Chain) -> FunctionRef {
+fn part(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    index: usize,
+    chain: &Chain<'_>,
+) -> FunctionRef {
     let name = super::identifier(&compiler.graph.nodes[index].name);
-    let mut b = Builder::new(format!("{name}_part"), "A function of a narrow Gaussian.");
-    let (mean, sd) = (b.param_f32("mean"), b.param_f32("sd"));
+    let b = &Builder::new(format!("{name}_part"), "A function of a narrow Gaussian.");
+    let [mean, sd] = ["mean", "sd"].map(|name| b.float_param(name));
     let x = Signal {
-        g: [sd, b.f32(0.0)],
-        ..Signal::certain(&mut b, mean).with_range(chain.signal.range)
+        g: Vec2([sd, b.float(0.0)]),
+        ..Signal::certain(mean).with_range(chain.signal.range)
     };
-    let arguments = Arguments {
-        footprint: [mean; 8],
-        position: None,
-        parameters: Arguments::parameters(&mut b, compiler.graph),
-    };
+    let arguments = Arguments::without_place(b, Arguments::parameters(b, compiler.graph));
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Local), arguments);
     let bundle = lowered(&mut lower, index, chain.entry, x);
-    let mut b = lower.algebra.b;
     for (i, signal) in bundle.iter().enumerate() {
-        let mean = signal.flat_mean(&mut b);
-        let slope = b.div(signal.g[0], sd);
-        let rest = signal.other_variance(&mut b);
-        b.result(format!("mean_{i}"), mean);
-        b.result(format!("slope_{i}"), slope);
-        b.result(format!("rest_{i}"), rest);
+        b.result(format!("mean_{i}"), signal.flat_mean());
+        b.result(format!("slope_{i}"), signal.g[0] / sd);
+        b.result(format!("rest_{i}"), signal.other_variance());
     }
     b.finish(module)
 }
@@ -171,7 +163,7 @@ fn averaged(
     compiler: &Compiler<'_>,
     module: &mut Module,
     index: usize,
-    chain: &Chain,
+    chain: &Chain<'_>,
     counts: (usize, usize),
 ) -> FunctionRef {
     let part = part(compiler, module, index, chain);
@@ -217,7 +209,7 @@ type Wanted = (Vec<f32>, f32);
 /// its values under a few Gaussians, for the defaults of the graph's inputs and the ends of their
 /// sliders: the process at these centres and standard deviations, and footprints that have removed half of its deviation. 0 where the
 /// closed form of the whole is good enough.
-fn side(compiler: &Compiler<'_>, index: usize, chain: &Chain, scales: &[[f32; 2]]) -> usize {
+fn side(compiler: &Compiler<'_>, index: usize, chain: &Chain<'_>, scales: &[[f32; 2]]) -> usize {
     let alone = || compiler.with_options(compiler.options);
     let mut values = Module::default();
     let components = point(&alone(), &mut values, index, chain.entry)

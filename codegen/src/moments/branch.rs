@@ -1,6 +1,6 @@
 //! Functions that are evaluated only where they are needed.
 
-use crate::ir::{Builder, FunctionRef, Module, Type, Value};
+use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Scalar, Scalars};
 
 /// A function as the body of a fold of at most one turn.
 #[derive(Clone, Debug)]
@@ -12,15 +12,14 @@ impl Branch {
         module: &mut Module,
         name: impl Into<String>,
         function: &FunctionRef,
-        declare: impl FnOnce(&mut Builder) -> Vec<Value>,
+        declare: impl for<'b> FnOnce(&'b Builder) -> Vec<Scalar<'b>>,
     ) -> Self {
-        let mut b = Builder::new(name, "The state becomes the function's value.");
-        b.param("index", Type::U32);
+        let b = &Builder::new(name, "The state becomes the function's value.");
+        b.uint_param("index");
         for i in 0..function.results.len() {
-            b.param_f32(format!("state_{i}"));
+            b.float_param(format!("state_{i}"));
         }
-        let arguments = declare(&mut b);
-        for (i, &value) in b.call(function, &arguments).iter().enumerate() {
+        for (i, value) in b.call(function, declare(b)).into_iter().enumerate() {
             b.result(format!("state_{i}"), value);
         }
         Self(b.finish(module))
@@ -35,16 +34,24 @@ impl Branch {
     ) -> Self {
         Self::new(module, format!("{name}_point"), function, |b| {
             (0..arguments)
-                .map(|i| b.param_f32(format!("x_{i}")))
+                .map(|i| b.float_param(format!("x_{i}")).into())
                 .collect()
         })
     }
 
     /// The function's results where `needed` holds, else 0.
-    pub(crate) fn taken(&self, b: &mut Builder, needed: Value, arguments: &[Value]) -> Vec<Value> {
-        let (none, once, zero) = (b.u32(0), b.u32(1), b.f32(0.0));
-        let count = b.select(needed, once, none);
-        let init = vec![zero; self.0.results.len()];
-        b.fold(&self.0, count, &init, arguments)
+    pub(crate) fn taken<'b>(
+        &self,
+        needed: Bool<'b>,
+        arguments: impl Scalars<'b>,
+    ) -> Vec<Float<'b>> {
+        let b = needed.builder();
+        let count = needed.select(1u32, 0u32);
+        b.fold(
+            &self.0,
+            count,
+            vec![b.float(0.0); self.0.results.len()],
+            arguments,
+        )
     }
 }

@@ -7,7 +7,7 @@
 //! the footprint costs what its height is over the few nodes.
 
 use super::{Algebra, Signal};
-use crate::ir::{Builder, Value};
+use crate::ir::Float;
 
 /// Standard scores and their weights: the centre with 2/(n + 2), and the vertices of a regular figure
 /// at radius √(n + 2): a hexagon, an icosahedron, the 24-cell (Stroud 1971, *Approximate Calculation
@@ -17,7 +17,7 @@ fn nodes(dimensions: usize) -> Vec<([f32; 4], f32)> {
     let mut vertices: Vec<[f64; 4]> = Vec::new();
     match dimensions {
         1 => {
-            return (super::curve::scores().into_iter())
+            return (super::curve::scores::<9>(1.1).into_iter())
                 .map(|(z, weight)| ([z, 0.0, 0.0, 0.0], weight))
                 .collect();
         }
@@ -77,32 +77,57 @@ fn polar() -> Vec<([f32; 4], f32)> {
 }
 
 /// The lower triangle of L with L Lᵀ = Σ, and the inverses of its diagonal.
-struct Triangle {
-    rows: Vec<Vec<Value>>,
-    inverses: Vec<Value>,
+struct Triangle<'b> {
+    rows: Vec<Vec<Float<'b>>>,
+    inverses: Vec<Float<'b>>,
 }
 
-impl Algebra {
+impl<'b> Triangle<'b> {
+    /// Of the covariances of signals.
+    fn of(inputs: &[Signal<'b>]) -> Self {
+        let mut rows: Vec<Vec<Float<'b>>> = Vec::new();
+        let mut inverses: Vec<Float<'b>> = Vec::new();
+        for (j, x) in inputs.iter().enumerate() {
+            let mut row: Vec<Float<'b>> = Vec::new();
+            let mut left = x.variance();
+            for i in 0..j {
+                let products = row.iter().zip(&rows[i]).map(|(&p, &q)| p * q);
+                let covariance = x.covariance(&inputs[i]).total;
+                let covariance = products.fold(covariance, |left, product| left - product);
+                let entry = covariance * inverses[i];
+                left -= entry.square();
+                row.push(entry);
+            }
+            let (sd, inverse) = super::spread(left.max(0.0));
+            row.push(sd);
+            rows.push(row);
+            inverses.push(inverse);
+        }
+        Self { rows, inverses }
+    }
+}
+
+impl<'b> Algebra<'b> {
     /// The signals of a function of signals; `ranges` are those of its results.
     ///
     /// # Panics
     /// If more than four inputs have a spread: a bug of the caller.
     pub fn cubature(
         &mut self,
-        inputs: &[Signal],
+        inputs: &[Signal<'b>],
         ranges: &[[f32; 2]],
-        function: impl Fn(&mut Builder, &[Value]) -> Vec<Value>,
-    ) -> Vec<Signal> {
+        function: impl Fn(&[Float<'b>]) -> Vec<Float<'b>>,
+    ) -> Vec<Signal<'b>> {
         self.cubature_by(nodes, inputs, ranges, function)
     }
 
     /// The same for two signals whose function is not near a quadratic: 18 nodes instead of 7.
     pub fn fine_cubature(
         &mut self,
-        inputs: &[Signal; 2],
+        inputs: &[Signal<'b>; 2],
         ranges: &[[f32; 2]],
-        function: impl Fn(&mut Builder, &[Value]) -> Vec<Value>,
-    ) -> Vec<Signal> {
+        function: impl Fn(&[Float<'b>]) -> Vec<Float<'b>>,
+    ) -> Vec<Signal<'b>> {
         let nodes = |dimensions| match dimensions {
             2 => polar(),
             _ => nodes(dimensions),
@@ -113,123 +138,83 @@ impl Algebra {
     fn cubature_by(
         &mut self,
         nodes: impl Fn(usize) -> Vec<([f32; 4], f32)>,
-        inputs: &[Signal],
+        inputs: &[Signal<'b>],
         ranges: &[[f32; 2]],
-        function: impl Fn(&mut Builder, &[Value]) -> Vec<Value>,
-    ) -> Vec<Signal> {
-        let inputs: Vec<Signal> = inputs.iter().map(|x| x.flat(&mut self.b)).collect();
-        let means: Vec<Value> = inputs.iter().map(|x| x.mean).collect();
+        function: impl Fn(&[Float<'b>]) -> Vec<Float<'b>>,
+    ) -> Vec<Signal<'b>> {
+        let b = self.b;
+        let inputs: Vec<Signal<'b>> = inputs.iter().map(Signal::flat).collect();
+        let means: Vec<Float<'b>> = inputs.iter().map(|x| x.mean).collect();
         let uncertain: Vec<usize> = (0..inputs.len())
-            .filter(|&i| self.mode.spreads() && !inputs[i].is_certain(&self.b))
+            .filter(|&i| self.mode.spreads() && !inputs[i].is_certain())
             .collect();
-        let results = |b: &mut Builder, arguments: &[Value]| {
-            let values = function(b, arguments);
+        let results = |arguments: &[Float<'b>]| {
+            let values = function(arguments);
             assert_eq!(values.len(), ranges.len(), "results of the function");
             values
         };
-        let centre = results(&mut self.b, &means);
+        let centre = results(&means);
         if uncertain.is_empty() {
             let signals = centre.into_iter().zip(ranges);
             return signals
-                .map(|(value, &range)| Signal::certain(&mut self.b, value).with_range(range))
+                .map(|(value, &range)| Signal::certain(value).with_range(range))
                 .collect();
         }
         self.bent = true;
         self.period = None;
-        let spread: Vec<Signal> = uncertain.iter().map(|&i| self.expose(&inputs[i])).collect();
-        let triangle = self.triangle(&spread);
-        let b = &mut self.b;
-        let mut rows: Vec<([f32; 4], f32, Vec<Value>)> = Vec::new();
-        for (z, weight) in nodes(spread.len()) {
-            let mut arguments = means.clone();
-            for (row, &i) in triangle.rows.iter().zip(&uncertain) {
-                for (&l, &z) in row.iter().zip(&z) {
-                    let step = b.scale(l, z);
-                    arguments[i] = b.add(arguments[i], step);
+        let spread: Vec<Signal<'b>> = uncertain.iter().map(|&i| self.expose(&inputs[i])).collect();
+        let triangle = Triangle::of(&spread);
+        let rows: Vec<([f32; 4], f32, Vec<Float<'b>>)> = (nodes(spread.len()).into_iter())
+            .map(|(z, weight)| {
+                if z == [0.0; 4] {
+                    return (z, weight, centre.clone());
                 }
-            }
-            let values = if z == [0.0; 4] {
-                centre.clone()
-            } else {
-                results(b, &arguments)
-            };
-            rows.push((z, weight, values));
-        }
+                let mut arguments = means.clone();
+                for (row, &i) in triangle.rows.iter().zip(&uncertain) {
+                    let steps = row.iter().zip(z).map(|(&l, z)| l * z);
+                    arguments[i] = steps.fold(arguments[i], |at, step| at + step);
+                }
+                (z, weight, results(&arguments))
+            })
+            .collect();
         let mut out = Vec::with_capacity(ranges.len());
         for (k, &range) in ranges.iter().enumerate() {
-            let b = &mut self.b;
             // Of the difference from the centre: a footprint of 0 gives the value.
-            let mut mean = b.f32(0.0);
-            let mut slopes = vec![mean; spread.len()];
-            for (z, weight, values) in &rows {
-                let beyond = b.sub(values[k], centre[k]);
-                let part = b.scale(beyond, *weight);
-                mean = b.add(mean, part);
-                for (slope, &z) in slopes.iter_mut().zip(z) {
-                    let part = b.scale(beyond, weight * z);
-                    *slope = b.add(*slope, part);
-                }
-            }
-            let mut distortion = b.f32(0.0);
-            for (z, weight, values) in &rows {
-                let beyond = b.sub(values[k], centre[k]);
-                let mut residual = b.sub(beyond, mean);
-                for (&slope, &z) in slopes.iter().zip(z) {
-                    let line = b.scale(slope, z);
-                    residual = b.sub(residual, line);
-                }
-                let square = b.square(residual);
-                let part = b.scale(square, *weight);
-                distortion = b.add(distortion, part);
-            }
+            let beyond = |values: &[Float<'b>]| values[k] - centre[k];
+            let parts = rows.iter().map(|(_, weight, f)| beyond(f) * *weight);
+            let mean = b.sum(parts);
+            let mut slopes: Vec<Float<'b>> = (0..spread.len())
+                .map(|j| {
+                    b.sum(
+                        rows.iter()
+                            .map(|(z, weight, f)| beyond(f) * (weight * z[j])),
+                    )
+                })
+                .collect();
+            let distortion = b.sum(rows.iter().map(|(z, weight, f)| {
+                let lines = slopes.iter().zip(z).map(|(&slope, &z)| slope * z);
+                let residual = lines.fold(beyond(f) - mean, |residual, line| residual - line);
+                residual.square() * *weight
+            }));
             // β = L⁻ᵀ a: the coefficients of the inputs themselves.
             let mut signal = Signal::constant(b, 0.0);
             for j in (0..spread.len()).rev() {
-                slopes[j] = b.mul(slopes[j], triangle.inverses[j]);
+                slopes[j] *= triangle.inverses[j];
                 for i in 0..j {
-                    let part = b.mul(triangle.rows[j][i], slopes[j]);
-                    slopes[i] = b.sub(slopes[i], part);
+                    let part = triangle.rows[j][i] * slopes[j];
+                    slopes[i] -= part;
                 }
-                let part = spread[j].scale(b, slopes[j]);
-                signal = signal.add(b, &part);
+                signal = signal + &spread[j] * slopes[j];
             }
-            signal.mean = b.add(centre[k], mean);
+            signal.mean = centre[k] + mean;
             signal.range = range;
             if range[0].is_finite() && range[1].is_finite() {
-                signal.mean = b.clamp(signal.mean, range[0], range[1]);
+                signal.mean = signal.mean.clamp(range[0], range[1]);
             }
             self.attach_fresh(&mut signal, distortion);
             out.push(signal);
         }
         out
-    }
-
-    fn triangle(&mut self, inputs: &[Signal]) -> Triangle {
-        let mut rows: Vec<Vec<Value>> = Vec::new();
-        let mut inverses: Vec<Value> = Vec::new();
-        for (j, x) in inputs.iter().enumerate() {
-            let mut row = Vec::new();
-            let mut left = x.variance(&mut self.b);
-            for i in 0..j {
-                let b = &mut self.b;
-                let mut covariance = x.covariance(b, &inputs[i]).total;
-                for (&p, &q) in row.iter().zip(&rows[i]) {
-                    let part = b.mul(p, q);
-                    covariance = b.sub(covariance, part);
-                }
-                let entry = b.mul(covariance, inverses[i]);
-                let square = b.square(entry);
-                left = b.sub(left, square);
-                row.push(entry);
-            }
-            let zero = self.b.f32(0.0);
-            let left = self.b.max(left, zero);
-            let (sd, inverse) = super::spread(&mut self.b, left);
-            row.push(sd);
-            rows.push(row);
-            inverses.push(inverse);
-        }
-        Triangle { rows, inverses }
     }
 }
 

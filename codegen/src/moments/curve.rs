@@ -8,16 +8,16 @@
 //! is constant.
 
 use super::{Gaussian, Moments, Normal, Transfer, piecewise::probability};
-use crate::ir::{Builder, Value};
+use crate::ir::Float;
 
 /// A function of one number by its values.
-pub struct Curve<F> {
+pub struct Curve<'b, F> {
     /// The function.
     pub function: F,
     /// Where it is not smooth, sorted.
-    pub kinks: Vec<Value>,
+    pub kinks: Vec<Float<'b>>,
     /// The constant that it is before the first kink and after the last one, where it is one.
-    pub flat: [Option<Value>; 2],
+    pub flat: [Option<Float<'b>>; 2],
     /// Its range.
     pub range: [f32; 2],
 }
@@ -39,9 +39,11 @@ pub(super) const TEN: [(f32, f32); 10] = [
     (0.986_953_26, 0.033_335_67),
 ];
 
-/// Equidistant standard scores with Gaussian weights of unit sum and variance.
-pub(super) fn scores() -> [(f32, f32); 9] {
-    let scores: [f64; 9] = std::array::from_fn(|i| (i as f64 - 4.0) * 1.1);
+/// Equidistant standard scores, so far apart before their variance is made 1, with Gaussian weights of
+/// unit sum and variance.
+pub(super) fn scores<const N: usize>(step: f64) -> [(f32, f32); N] {
+    let middle = (N - 1) as f64 / 2.0;
+    let scores: [f64; N] = std::array::from_fn(|i| (i as f64 - middle) * step);
     let weights = scores.map(|z| (-0.5 * z * z).exp());
     let total: f64 = weights.iter().sum();
     let parts = scores.iter().zip(&weights);
@@ -53,19 +55,19 @@ pub(super) fn scores() -> [(f32, f32); 9] {
 }
 
 /// A node of the quadrature: z, its weight, and the function there.
-struct Node {
-    z: Value,
-    weight: Value,
-    value: Value,
+struct Node<'b> {
+    z: Float<'b>,
+    weight: Float<'b>,
+    value: Float<'b>,
 }
 
 /// A piece on which the function is constant: ∫ zᵏφ over it for k = 0…4, and the function.
-struct Flat {
-    moments: [Value; 5],
-    value: Value,
+struct Flat<'b> {
+    moments: [Float<'b>; 5],
+    value: Float<'b>,
 }
 
-impl<F: Fn(&mut Builder, Value) -> Value> Curve<F> {
+impl<'b, F: Fn(Float<'b>) -> Float<'b>> Curve<'b, F> {
     /// A function that is smooth everywhere.
     pub fn smooth(function: F, range: [f32; 2]) -> Self {
         Self {
@@ -76,190 +78,134 @@ impl<F: Fn(&mut Builder, Value) -> Value> Curve<F> {
         }
     }
 
-    fn node(&self, b: &mut Builder, x: &Gaussian, z: Value, weight: Value) -> Node {
-        let deviation = b.mul(x.sd, z);
-        let at = b.add(x.mean, deviation);
-        let value = (self.function)(b, at);
+    fn node(&self, x: &Gaussian<'b>, z: Float<'b>, weight: Float<'b>) -> Node<'b> {
+        let value = (self.function)(x.mean + x.sd * z);
         Node { z, weight, value }
     }
 
     /// The pieces between the kinks.
-    fn pieces(&self, b: &mut Builder, x: &Gaussian) -> (Vec<Node>, Vec<Flat>) {
-        let (mut nodes, mut flats) = (Vec::new(), Vec::new());
+    fn pieces(&self, x: &Gaussian<'b>) -> (Vec<Node<'b>>, Vec<Flat<'b>>) {
+        let number = |z: f32| x.mean.literal(z);
         if self.kinks.is_empty() {
-            for (score, weight) in scores() {
-                let (z, weight) = (b.f32(score), b.f32(weight));
-                nodes.push(self.node(b, x, z, weight));
-            }
-            return (nodes, flats);
+            let nodes = scores::<9>(1.1).map(|(z, weight)| self.node(x, number(z), number(weight)));
+            return (nodes.into(), Vec::new());
         }
-        let normals: Vec<Normal> = (self.kinks.iter())
-            .map(|&kink| {
-                let distance = b.sub(x.mean, kink);
-                Normal::at(b, distance, x.inverse_sd)
-            })
-            .collect();
-        let edge = |b: &mut Builder, z: f32| {
-            let z = b.f32(z);
-            Normal::of(b, z)
-        };
         // Standard scores of edges are −z: the first edge is the leftmost.
-        let (first, last) = (edge(b, 12.0), edge(b, -12.0));
-        let edges: Vec<Normal> = std::iter::once(first)
-            .chain(normals)
-            .chain([last])
-            .collect();
+        let mut edges = vec![Normal::of(number(12.0))];
+        edges.extend((self.kinks.iter()).map(|&kink| Normal::at(x.mean - kink, x.inverse_sd)));
+        edges.push(Normal::of(number(-12.0)));
+        let (mut nodes, mut flats) = (Vec::new(), Vec::new());
         for (i, ends) in edges.windows(2).enumerate() {
             let flat = match i {
                 0 => self.flat[0],
-                _ if i + 1 == edges.len() - 1 => self.flat[1],
+                _ if i == self.kinks.len() => self.flat[1],
                 _ => None,
             };
             match flat {
                 Some(value) => {
-                    let moments = truncated(b, &ends[0], &ends[1]);
+                    let moments = truncated(&ends[0], &ends[1]);
                     flats.push(Flat { moments, value });
                 }
-                None => self.curved(b, x, &ends[0], &ends[1], &mut nodes),
+                None => nodes.extend(self.curved(x, &ends[0], &ends[1])),
             }
         }
         (nodes, flats)
     }
 
     /// The nodes of one piece, whose weights sum to its probability.
-    fn curved(
-        &self,
-        b: &mut Builder,
-        x: &Gaussian,
-        from: &Normal,
-        to: &Normal,
-        nodes: &mut Vec<Node>,
-    ) {
-        let [start, end] = [from.z, to.z].map(|z| {
-            let z = b.neg(z);
-            b.clamp(z, -REACH, REACH)
+    fn curved(&self, x: &Gaussian<'b>, from: &Normal<'b>, to: &Normal<'b>) -> [Node<'b>; 10] {
+        let [start, end] = [from, to].map(|edge| (-edge.z).clamp(-REACH, REACH));
+        let width = end - start;
+        let rows = TEN.map(|(node, weight)| {
+            let z = start + width * node;
+            (z, (z.square() * -0.5).exp() * weight)
         });
-        let width = b.sub(end, start);
-        let mut rows = Vec::with_capacity(TEN.len());
-        let mut total = b.f32(0.0);
-        for (node, weight) in TEN {
-            let step = b.scale(width, node);
-            let z = b.add(start, step);
-            let square = b.square(z);
-            let exponent = b.scale(square, -0.5);
-            let density = b.exp(exponent);
-            let weight = b.scale(density, weight);
-            total = b.add(total, weight);
-            rows.push((z, weight));
-        }
-        let p = probability(b, from, to);
-        let share = b.div(p, total);
-        for (z, weight) in rows {
-            let weight = b.mul(weight, share);
-            nodes.push(self.node(b, x, z, weight));
-        }
+        let total = width.builder().sum(rows.map(|(_, weight)| weight));
+        let share = probability(from, to) / total;
+        rows.map(|(z, weight)| self.node(x, z, weight * share))
     }
 }
 
 /// ∫ zᵏφ for k = 0…4 between two edges.
-fn truncated(b: &mut Builder, from: &Normal, to: &Normal) -> [Value; 5] {
-    let (a, e) = (b.neg(from.z), b.neg(to.z));
+fn truncated<'b>(from: &Normal<'b>, to: &Normal<'b>) -> [Float<'b>; 5] {
     let (mut left, mut right) = (from.density, to.density);
-    let zeroth = probability(b, from, to);
-    let mut out = [zeroth, b.sub(left, right), zeroth, zeroth, zeroth];
+    let mut out = [probability(from, to); 5];
+    out[1] = left - right;
     for k in 2..5 {
-        (left, right) = (b.mul(a, left), b.mul(e, right));
-        let edge = b.sub(left, right);
-        let before = b.scale(out[k - 2], (k - 1) as f32);
-        out[k] = b.add(before, edge);
+        (left, right) = (-from.z * left, -to.z * right);
+        out[k] = out[k - 2] * (k - 1) as f32 + (left - right);
     }
     out
 }
 
-impl<F: Fn(&mut Builder, Value) -> Value> Transfer for Curve<F> {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        (self.function)(b, x)
+impl<'b, F: Fn(Float<'b>) -> Float<'b>> Transfer<'b> for Curve<'b, F> {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        (self.function)(x)
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let (nodes, flats) = self.pieces(b, x);
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let (nodes, flats) = self.pieces(x);
         // The line c + dz through the middle, and the secant over ±σ.
-        let c = self.value(b, x.mean);
-        let (above, below) = (b.add(x.mean, x.sd), b.sub(x.mean, x.sd));
-        let (above, below) = (self.value(b, above), self.value(b, below));
-        let d = b.sub(above, below);
-        let d = b.scale(d, 0.5);
-        let mut sums = [b.f32(0.0); 4];
-        for node in &nodes {
-            let line = b.mul(d, node.z);
-            let line = b.add(c, line);
-            let beyond = b.sub(node.value, line);
-            let first = b.mul(node.weight, beyond);
-            let square = b.square(node.z);
-            let (second, third) = (b.offset(square, -1.0), b.offset(square, -3.0));
-            let third = b.mul(third, node.z);
-            let factors = [b.f32(1.0), node.z, second, third];
-            for (sum, factor) in sums.iter_mut().zip(factors) {
-                let part = b.mul(first, factor);
-                *sum = b.add(*sum, part);
+        let c = self.value(x.mean);
+        let d = (self.value(x.mean + x.sd) - self.value(x.mean - x.sd)) * 0.5;
+
+        // ∫ (T − c − dz) Heₙ φ.
+        let mut sums = [c.literal(0.0); 4];
+        let mut add = |terms: [Float<'b>; 4]| {
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                *sum += term;
             }
+        };
+        for &Node { z, weight, value } in &nodes {
+            let beyond = weight * (value - (c + d * z));
+            let z2 = z.square();
+            add([
+                beyond,
+                beyond * z,
+                beyond * (z2 + -1.0),
+                beyond * ((z2 + -3.0) * z),
+            ]);
         }
         for flat in &flats {
-            // ∫ (k − dz) Heₙ φ.
-            let k = b.sub(flat.value, c);
+            let k = flat.value - c;
             let [i0, i1, i2, i3, i4] = flat.moments;
-            let (i1x3, i2x3) = (b.scale(i1, 3.0), b.scale(i2, 3.0));
-            let rows = [
-                (i0, i1),
-                (i1, i2),
-                (b.sub(i2, i0), b.sub(i3, i1)),
-                (b.sub(i3, i1x3), b.sub(i4, i2x3)),
-            ];
-            for (sum, (constant, linear)) in sums.iter_mut().zip(rows) {
-                let (rise, fall) = (b.mul(k, constant), b.mul(d, linear));
-                let part = b.sub(rise, fall);
-                *sum = b.add(*sum, part);
-            }
+            add([
+                k * i0 - d * i1,
+                k * i1 - d * i2,
+                k * (i2 - i0) - d * (i3 - i1),
+                k * (i3 - i1 * 3.0) - d * (i4 - i2 * 3.0),
+            ]);
         }
         let [mean, first, second, third] = sums;
-        let (mean, first) = (b.add(mean, c), b.add(first, d));
-        let mut distortion = b.f32(0.0);
-        for node in &nodes {
-            let line = b.mul(first, node.z);
-            let line = b.add(mean, line);
-            let residual = b.sub(node.value, line);
-            let square = b.square(residual);
-            let part = b.mul(node.weight, square);
-            distortion = b.add(distortion, part);
-        }
-        for flat in &flats {
-            // ∫ (k − sz)² φ.
-            let k = b.sub(flat.value, mean);
+        let (mean, first) = (mean + c, first + d);
+
+        // ∫ (T − mean − first z)² φ.
+        let curved = nodes.iter().map(|&Node { z, weight, value }| {
+            let residual = value - (mean + first * z);
+            weight * residual.square()
+        });
+        let flat = flats.iter().map(|flat| {
+            let k = flat.value - mean;
             let [i0, i1, i2, ..] = flat.moments;
-            let (k2, s2, cross) = (b.square(k), b.square(first), b.mul(k, first));
-            let cross = b.scale(cross, -2.0);
-            let part = b.dot(&[k2, cross, s2], &[i0, i1, i2]);
-            let zero = b.f32(0.0);
-            let part = b.max(part, zero);
-            distortion = b.add(distortion, part);
-        }
-        let (inverse, inverse2) = (x.inverse_sd, b.square(x.inverse_sd));
-        let inverse3 = b.mul(inverse, inverse2);
-        let [low, high] = self.range;
-        let mean = match (low.is_finite(), high.is_finite()) {
-            (true, true) => b.clamp(mean, low, high),
+            (k.square() * i0 + k * first * -2.0 * i1 + first.square() * i2).max(0.0)
+        });
+        let distortion = c.builder().sum(curved.chain(flat));
+
+        let (inverse, inverse2) = (x.inverse_sd, x.inverse_sd.square());
+        let mean = match self.range {
+            [low, high] if low.is_finite() && high.is_finite() => mean.clamp(low, high),
             _ => mean,
         };
-        Moments {
+        let derivatives = [
             mean,
-            slope: b.mul(first, inverse),
-            curvature: b.mul(second, inverse2),
-            third: b.mul(third, inverse3),
-            distortion,
-        }
+            first * inverse,
+            second * inverse2,
+            third * (inverse * inverse2),
+        ];
+        Moments::of(derivatives, distortion)
     }
 
-    fn range(&self, _: &Builder, _: [f32; 2]) -> [f32; 2] {
+    fn range(&self, _: [f32; 2]) -> [f32; 2] {
         self.range
     }
 }

@@ -1,9 +1,9 @@
 //! Fresh parts that several signals share: a covariance matrix as a factor.
 
 use super::{Algebra, Signal};
-use crate::ir::{Builder, Value};
+use crate::ir::Float;
 
-impl Algebra {
+impl<'b> Algebra<'b> {
     /// Adds correlated fresh parts to the signals: `covariance` holds the rows of the lower
     /// triangle of their covariance matrix, 11, 21, 22, 31, 32, 33, ….
     ///
@@ -15,23 +15,21 @@ impl Algebra {
     ///
     /// # Panics
     /// If the numbers of signals and of entries do not fit.
-    pub fn attach_joint(&mut self, signals: &mut [Signal], covariance: &[Value]) {
+    pub fn attach_joint(&mut self, signals: &mut [Signal<'b>], covariance: &[Float<'b>]) {
         let n = signals.len();
         assert_eq!(covariance.len(), n * (n + 1) / 2, "entries of a triangle");
-        let factor = factor(&mut self.b, n, covariance);
-        for (k, column) in factor.iter().enumerate() {
+        for (k, column) in factor(n, covariance).iter().enumerate() {
             if k + 1 == n {
                 // The last number is the last signal's own.
-                let variance = self.b.square(column[0]);
-                self.attach_fresh(&mut signals[k], variance);
+                self.attach_fresh(&mut signals[k], column[0].square());
                 continue;
             }
-            if column.iter().all(|&entry| self.b.is_zero(entry)) {
+            if column.iter().all(|entry| entry.is_zero()) {
                 continue;
             }
             let symbol = self.fresh_symbol();
             for (signal, &entry) in signals[k..].iter_mut().zip(column) {
-                if !self.b.is_zero(entry) {
+                if !entry.is_zero() {
                     signal.push_shared(symbol, entry);
                 }
             }
@@ -40,38 +38,26 @@ impl Algebra {
 }
 
 /// The columns of the factor, each from its diagonal down.
-fn factor(b: &mut Builder, n: usize, covariance: &[Value]) -> Vec<Vec<Value>> {
-    let zero = b.f32(0.0);
+fn factor<'b>(n: usize, covariance: &[Float<'b>]) -> Vec<Vec<Float<'b>>> {
     let entry = |i: usize, k: usize| covariance[i * (i + 1) / 2 + k];
     // What is left of each variance.
-    let mut left: Vec<Value> = (0..n).map(|i| b.max(entry(i, i), zero)).collect();
-    let mut columns: Vec<Vec<Value>> = Vec::new();
+    let mut left: Vec<Float<'b>> = (0..n).map(|i| entry(i, i).max(0.0)).collect();
+    let mut columns: Vec<Vec<Float<'b>>> = Vec::new();
     for k in 0..n {
-        let pivot = b.sqrt(left[k]);
+        let pivot = left[k].sqrt();
         let mut column = vec![pivot];
         // A pivot below the rounding of its variance says nothing of the others.
-        let variance = b.max(entry(k, k), zero);
-        let floor = b.scale(variance, 1e-6);
-        let floor = b.offset(floor, 1e-30);
-        let sound = b.lt(floor, left[k]);
-        let one = b.f32(1.0);
-        let divisor = b.select(sound, pivot, one);
+        let sound = left[k].gt(entry(k, k).max(0.0) * 1e-6 + 1e-30);
+        let divisor = sound.select(pivot, 1.0);
         for i in k + 1..n {
             let mut sum = entry(i, k);
             for (j, other) in columns.iter().enumerate() {
-                let product = b.mul(other[i - j], other[k - j]);
-                sum = b.sub(sum, product);
+                sum -= other[i - j] * other[k - j];
             }
-            let quotient = b.div(sum, divisor);
-            let most = b.sqrt(left[i]);
-            let least = b.neg(most);
-            let limited = b.max(quotient, least);
-            let limited = b.min(limited, most);
-            let limited = b.select(sound, limited, zero);
+            let most = left[i].sqrt();
+            let limited = sound.select((sum / divisor).clamp(-most, most), 0.0);
             column.push(limited);
-            let square = b.square(limited);
-            let rest = b.sub(left[i], square);
-            left[i] = b.max(rest, zero);
+            left[i] = (left[i] - limited.square()).max(0.0);
         }
         columns.push(column);
     }
@@ -82,25 +68,21 @@ fn factor(b: &mut Builder, n: usize, covariance: &[Value]) -> Vec<Vec<Value>> {
 mod tests {
     use super::*;
     use crate::cpu::{Evaluator, Input, Scratch};
-    use crate::ir::Module;
+    use crate::ir::{Builder, Module};
     use crate::moments::Mode;
 
     /// The covariance that three signals have after the matrix was attached to them.
     fn attached(matrix: [f32; 6]) -> Vec<f64> {
-        let mut b = Builder::new("f", "A test.");
-        let parameters: Vec<Value> = (0..6).map(|i| b.param_f32(format!("c{i}"))).collect();
-        let mut algebra = Algebra::new(b, Mode::Local);
-        let mut signals: Vec<Signal> = (0..3)
-            .map(|_| Signal::constant(&mut algebra.b, 0.0))
-            .collect();
-        algebra.attach_joint(&mut signals, &parameters);
-        let mut b = algebra.b;
+        let b = &Builder::new("f", "A test.");
+        let entries: Vec<Float<'_>> = (0..6).map(|i| b.float_param(format!("c{i}"))).collect();
+        let mut signals = [0, 1, 2].map(|_| Signal::constant(b, 0.0));
+        Algebra::new(b, Mode::Local).attach_joint(&mut signals, &entries);
         for i in 0..3 {
             for k in 0..=i {
                 let value = if i == k {
-                    signals[i].variance(&mut b)
+                    signals[i].variance()
                 } else {
-                    signals[i].covariance(&mut b, &signals[k]).total
+                    signals[i].covariance(&signals[k]).total
                 };
                 b.result(format!("r{i}{k}"), value);
             }

@@ -19,7 +19,7 @@ mod split;
 
 use super::branch::Branch;
 use super::{Algebra, Mode, Signal};
-use crate::ir::{Builder, FunctionRef, Module, Numbers, Value};
+use crate::ir::{Float, FunctionRef, Module, Numbers, Sym2, Vec2};
 use pack::Packing;
 use std::sync::{Arc, LazyLock};
 
@@ -142,11 +142,10 @@ impl Map {
             let numbers = Numbers::lazy(total, bake).with_error(error);
             module.push_table(format!("{name}_{suffix}"), numbers)
         });
-        let mut of = |i: usize| {
-            let (_, suffix) = MOMENTS[i];
-            read::bilinear(module, &format!("{name}_{suffix}_at"), tables[i], &packing)
-        };
-        let readers = [of(0), of(1), of(2), of(3)];
+        let readers = MOMENTS.map(|(moment, suffix)| {
+            let table = tables[moment as usize];
+            read::bilinear(module, &format!("{name}_{suffix}_at"), table, &packing)
+        });
         let branch = Branch::of_numbers(module, name, &function, 2);
         Self {
             function,
@@ -177,43 +176,43 @@ fn layout(packing: &Packing) -> Vec<f32> {
     rows
 }
 
-impl Algebra {
+impl<'b> Algebra<'b> {
     /// T(X, Y), whatever the covariance of X and Y is: means E[T], coefficients E[∂T] of both, and
     /// the rest of the variance into a fresh ε of each component.
-    pub(crate) fn map(&mut self, [x, y]: [&Signal; 2], map: &Map) -> Vec<Signal> {
-        let [x, y] = [x, y].map(|signal| map.phase(&mut self.b, signal));
-        let certain = x.is_certain(&self.b) && y.is_certain(&self.b);
-        if !self.mode.spreads() || certain {
-            let values = self.b.call(&map.function, &[x.mean, y.mean]);
-            return (values.iter().zip(&map.ranges))
-                .map(|(&value, &range)| Signal::certain(&mut self.b, value).with_range(range))
+    pub(crate) fn map(&mut self, [x, y]: [&Signal<'b>; 2], map: &Map) -> Vec<Signal<'b>> {
+        let [x, y] = &[x, y].map(|signal| map.phase(signal));
+        let mean = Vec2([x.mean, y.mean]);
+        if !self.mode.spreads() || x.is_certain() && y.is_certain() {
+            let values = self.b.call(&map.function, mean);
+            return (values.into_iter().zip(&map.ranges))
+                .map(|(value, &range)| Signal::certain(value).with_range(range))
                 .collect();
         }
         self.bent = true;
-        let b = &mut self.b;
-        let (vx, vy) = (x.variance(b), y.variance(b));
-        let covariance = x.covariance(b, &y).total;
-        let mut moments = map.moments(b, [x.mean, y.mean], [vx, covariance, vy]);
-        if self.mode == Mode::Quad {
-            let means = split::means(b, map, [&x, &y]);
-            let fine = map.is_fine(b, [vx, covariance, vy]);
-            for (moments, mean) in moments.iter_mut().zip(means.into_iter().flatten()) {
-                moments.mean = b.select(fine, moments.mean, mean);
+        let covariance = Sym2([x.variance(), x.covariance(y).total, y.variance()]);
+        let mut moments = map.moments(mean, covariance);
+        if self.mode == Mode::Quad
+            && let Some(means) = split::means(map, [x, y])
+        {
+            let fine = map.is_fine(covariance);
+            for (moments, mean) in moments.iter_mut().zip(means) {
+                moments.mean = fine.select(moments.mean, mean);
             }
         }
         (moments.into_iter().zip(&map.ranges))
             .map(|(m, &range)| {
-                let b = &mut self.b;
-                let (of_x, of_y) = (x.scale(b, m.slopes[0]), y.scale(b, m.slopes[1]));
-                let mut out = of_x.add(b, &of_y);
-                out.mean = if range.iter().all(|bound| bound.is_finite()) {
-                    b.clamp(m.mean, range[0], range[1])
-                } else {
-                    m.mean
+                let bounded = range.iter().all(|bound| bound.is_finite());
+                let mut out = Signal {
+                    mean: if bounded {
+                        m.mean.clamp(range[0], range[1])
+                    } else {
+                        m.mean
+                    },
+                    cell: None,
+                    range,
+                    binary: None,
+                    ..x * m.slopes[0] + y * m.slopes[1]
                 };
-                out.cell = None;
-                out.range = range;
-                out.binary = None;
                 self.attach_fresh(&mut out, m.distortion);
                 out
             })
@@ -224,22 +223,22 @@ impl Algebra {
 impl Map {
     /// The signal with its mean as one number; of a position in a period of 1 the fraction alone,
     /// which keeps its detail far from the origin.
-    fn phase(&self, b: &mut Builder, signal: &Signal) -> Signal {
+    fn phase<'b>(&self, signal: &Signal<'b>) -> Signal<'b> {
         if self.domain.periodic && self.domain.widths() == [1.0; 2] {
             return Signal {
                 cell: None,
                 ..signal.clone()
             };
         }
-        signal.flat(b)
+        signal.flat()
     }
 }
 
 /// The moments of one component.
-struct Moments {
-    mean: Value,
-    slopes: [Value; 2],
-    distortion: Value,
+struct Moments<'b> {
+    mean: Float<'b>,
+    slopes: Vec2<'b>,
+    distortion: Float<'b>,
 }
 
 #[cfg(test)]

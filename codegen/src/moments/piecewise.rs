@@ -5,271 +5,181 @@
 //! E[T] = c₀ + d₀m + Σ J_k Φ(z_k) + B_k σ(z_k Φ(z_k) + φ(z_k)) + …, and its derivatives by m
 //! (MATH §6; RULES, transfers).
 
-mod cubic;
 mod distortion;
+mod ramp;
 mod segment;
 
 use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer, signal::UNBOUNDED};
-use crate::ir::{Builder, Value};
+use crate::ir::{Builder, Float, Operand};
 use segment::Segment;
 use smallvec::smallvec;
 
 pub(super) use distortion::Residual;
+pub use ramp::Shape;
 pub use segment::Bump;
 pub(super) use segment::probability;
 
+/// Two places closer than this are one: what lies between them is a jump.
+const CLOSEST: f32 = 1e-6;
+
 /// Where a piecewise function jumps or bends.
 #[derive(Clone, Copy, Debug)]
-pub struct Knot {
+pub struct Knot<'b> {
     /// t: where; knots are sorted.
-    pub at: Value,
+    pub at: Float<'b>,
     /// J: by how much the value jumps (T is the right limit at t itself).
-    pub jump: Value,
+    pub jump: Float<'b>,
     /// B: by how much the slope changes.
-    pub bend: Value,
+    pub bend: Float<'b>,
+}
+
+impl<'b> Knot<'b> {
+    /// The value jumps, the slope stays.
+    pub fn jump(at: Float<'b>, by: impl Operand<'b, f32>) -> Self {
+        Self {
+            at,
+            jump: by.within(at.builder()),
+            bend: at.literal(0.0),
+        }
+    }
+
+    /// The slope changes, the value does not jump.
+    pub fn bend(at: Float<'b>, by: impl Operand<'b, f32>) -> Self {
+        Self {
+            at,
+            jump: at.literal(0.0),
+            bend: by.within(at.builder()),
+        }
+    }
 }
 
 /// A piecewise function: see the module documentation.
 #[derive(Clone, Debug)]
-pub struct Piecewise {
+pub struct Piecewise<'b> {
     /// c₀.
-    pub offset: Value,
+    pub offset: Float<'b>,
     /// d₀.
-    pub slope: Value,
+    pub slope: Float<'b>,
     /// The knots, sorted.
-    pub knots: Vec<Knot>,
+    pub knots: Vec<Knot<'b>>,
     /// The bumps of the segments between neighbouring knots, monotone on top of the straight ones;
     /// empty where every segment is straight.
-    pub bumps: Vec<Bump>,
+    pub bumps: Vec<Bump<'b>>,
 }
 
-impl Piecewise {
-    /// 1 where x ≥ `at`, else 0.
-    pub fn step(b: &mut Builder, at: Value) -> Self {
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        let knots = vec![Knot {
-            at,
-            jump: one,
-            bend: zero,
-        }];
+impl<'b> Piecewise<'b> {
+    /// c₀ + d₀x with knots, all of whose segments are straight.
+    pub fn straight(offset: Float<'b>, slope: impl Operand<'b, f32>, knots: Vec<Knot<'b>>) -> Self {
         Self {
-            offset: zero,
-            slope: zero,
+            offset,
+            slope: slope.within(offset.builder()),
             knots,
             bumps: Vec::new(),
         }
+    }
+
+    /// 1 where x ≥ `at`, else 0.
+    pub fn step(at: Float<'b>) -> Self {
+        Self::straight(at.literal(0.0), 0.0, vec![Knot::jump(at, 1.0)])
     }
 
     /// max(x, 0).
-    pub fn hinge(b: &mut Builder) -> Self {
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        let knots = vec![Knot {
-            at: zero,
-            jump: zero,
-            bend: one,
-        }];
-        Self {
-            offset: zero,
-            slope: zero,
-            knots,
-            bumps: Vec::new(),
-        }
+    pub fn hinge(b: &'b Builder) -> Self {
+        let zero = b.float(0.0);
+        Self::straight(zero, 0.0, vec![Knot::bend(zero, 1.0)])
     }
 
     /// |x|.
-    pub fn absolute(b: &mut Builder) -> Self {
-        let (zero, minus, two) = (b.f32(0.0), b.f32(-1.0), b.f32(2.0));
-        let knots = vec![Knot {
-            at: zero,
-            jump: zero,
-            bend: two,
-        }];
-        Self {
-            offset: zero,
-            slope: minus,
-            knots,
-            bumps: Vec::new(),
-        }
+    pub fn absolute(b: &'b Builder) -> Self {
+        let zero = b.float(0.0);
+        Self::straight(zero, -1.0, vec![Knot::bend(zero, 2.0)])
     }
 
     /// |x| with its corner rounded by a parabola: (x² + k²)/2k where |x| < k = `width`.
-    pub fn rounded(b: &mut Builder, width: Value) -> Self {
-        let least = b.f32(1e-6);
-        let width = b.max(width, least);
-        let (zero, one, minus) = (b.f32(0.0), b.f32(1.0), b.f32(-1.0));
-        let (low, span) = (b.neg(width), b.add(width, width));
-        let knots = [low, width].map(|at| Knot {
-            at,
-            jump: zero,
-            bend: one,
-        });
-        let start = b.neg(span);
+    pub fn rounded(width: Float<'b>) -> Self {
+        let width = width.max(CLOSEST);
+        let span = width + width;
+        let knots = [-width, width].map(|at| Knot::bend(at, 1.0));
         Self {
-            offset: zero,
-            slope: minus,
-            knots: knots.to_vec(),
-            bumps: vec![Bump { start, end: span }],
+            bumps: vec![Bump {
+                start: -span,
+                end: span,
+            }],
+            ..Self::straight(width.literal(0.0), -1.0, knots.to_vec())
         }
     }
 
     /// x limited to `[low, high]`; `low` where they are swapped, as by `max` after `min`.
-    pub fn clamp(b: &mut Builder, low: Value, high: Value) -> Self {
-        let high = b.max(low, high);
-        let (zero, one, minus) = (b.f32(0.0), b.f32(1.0), b.f32(-1.0));
-        let knots = vec![
-            Knot {
-                at: low,
-                jump: zero,
-                bend: one,
-            },
-            Knot {
-                at: high,
-                jump: zero,
-                bend: minus,
-            },
-        ];
-        Self {
-            offset: low,
-            slope: zero,
-            knots,
-            bumps: Vec::new(),
-        }
+    pub fn clamp(low: Float<'b>, high: Float<'b>) -> Self {
+        let knots = vec![Knot::bend(low, 1.0), Knot::bend(low.max(high), -1.0)];
+        Self::straight(low, 0.0, knots)
     }
 
     /// 0 below `low`, 1 above `high`, cubic between (a step where they are equal).
-    pub fn smoothstep(b: &mut Builder, low: Value, high: Value) -> Self {
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        Self::ramp(b, &[(low, zero), (high, one)], Shape::Smooth)
-    }
-
-    /// A ramp through `(at, value)`, sorted; constant outside. Neighbours at one place jump.
-    ///
-    /// # Panics
-    /// If there is no stop: a bug of the caller.
-    pub fn ramp(b: &mut Builder, stops: &[(Value, Value)], shape: Shape) -> Self {
-        let zero = b.f32(0.0);
-        let mut knots: Vec<Knot> = Vec::new();
-        let mut bumps = Vec::new();
-        let mut secants = Vec::new();
-        let mut before = zero;
-        for (i, &(at, value)) in stops.iter().enumerate() {
-            let (mut jump, mut after) = (zero, zero);
-            let mut difference = zero;
-            if shape == Shape::Constant {
-                if i > 0 {
-                    jump = b.sub(value, stops[i - 1].1);
-                }
-            } else if let Some(&(next_at, next)) = stops.get(i + 1) {
-                difference = b.sub(next, value);
-                let width = b.sub(next_at, at);
-                // Stops closer than this are one place: the ramp between them is a jump, which the
-                // later stop makes.
-                let least = b.f32(1e-6);
-                let distinct = b.lt(least, width);
-                let guarded = b.max(width, least);
-                let slope = b.div(difference, guarded);
-                after = b.select(distinct, slope, zero);
-                difference = b.select(distinct, difference, zero);
-                secants.push(cubic::Secant {
-                    slope: after,
-                    width: guarded,
-                });
-            }
-            if shape != Shape::Constant && i > 0 {
-                let (previous_at, previous) = stops[i - 1];
-                let width = b.sub(at, previous_at);
-                let least = b.f32(1e-6);
-                let distinct = b.lt(least, width);
-                let step = b.sub(value, previous);
-                jump = b.select(distinct, zero, step);
-            }
-            let bend = b.sub(after, before);
-            knots.push(Knot { at, jump, bend });
-            if shape == Shape::Smooth && i + 1 < stops.len() {
-                bumps.push(Bump::smooth(b, difference));
-            }
-            before = after;
-        }
-        if shape == Shape::Cubic {
-            bumps = cubic::monotone(b, &secants);
-        }
-        let slope = zero;
-        Self {
-            offset: stops[0].1,
-            slope,
-            knots,
-            bumps,
-        }
+    pub fn smoothstep(low: Float<'b>, high: Float<'b>) -> Self {
+        let [zero, one] = [0.0, 1.0].map(|y| low.literal(y));
+        Self::ramp(&[(low, zero), (high, one)], Shape::Smooth)
     }
 
     /// `a·T + c`.
-    pub fn affine(mut self, b: &mut Builder, a: Value, c: Value) -> Self {
-        let scaled = b.mul(self.offset, a);
-        self.offset = b.add(scaled, c);
-        self.slope = b.mul(self.slope, a);
+    pub fn affine(mut self, a: impl Operand<'b, f32>, c: impl Operand<'b, f32>) -> Self {
+        let a = a.within(self.offset.builder());
+        self.offset = self.offset * a + c;
+        self.slope *= a;
         for knot in &mut self.knots {
-            knot.jump = b.mul(knot.jump, a);
-            knot.bend = b.mul(knot.bend, a);
+            knot.jump *= a;
+            knot.bend *= a;
         }
         for bump in &mut self.bumps {
-            *bump = bump.scale(b, a);
+            bump.start *= a;
+            bump.end *= a;
         }
         self
     }
 
     /// The same function on `range`, without the knots that no input reaches: a ramp over all of a
     /// bounded signal is linear there.
-    fn within(&self, b: &mut Builder, [low, high]: [f32; 2]) -> Self {
+    fn within(&self, [low, high]: [f32; 2]) -> Self {
+        let mut out = self.clone();
         if !self.bumps.is_empty() {
-            return self.clone();
+            return out;
         }
-        let mut out = Self {
-            knots: Vec::new(),
-            ..self.clone()
-        };
-        for knot in &self.knots {
-            match b.as_constant(knot.at) {
-                Some(at) if at >= high => {}
-                Some(at) if at <= low => {
-                    let back = b.mul(knot.bend, knot.at);
-                    let rise = b.sub(knot.jump, back);
-                    out.offset = b.add(out.offset, rise);
-                    out.slope = b.add(out.slope, knot.bend);
-                }
-                _ => out.knots.push(*knot),
+        out.knots.retain(|knot| match knot.at.as_constant() {
+            Some(at) if at >= high => false,
+            Some(at) if at <= low => {
+                out.offset += knot.jump - knot.bend * knot.at;
+                out.slope += knot.bend;
+                false
             }
-        }
+            _ => true,
+        });
         out
     }
 
     /// The input limited to where the function is not constant, by `margin` on both sides: far
     /// outside, sums of slopes would leave their rounding errors.
-    fn limited(&self, b: &mut Builder, x: Value, margin: Value) -> Value {
+    fn limited(&self, x: Float<'b>, margin: impl Operand<'b, f32>) -> Float<'b> {
         let (Some(first), Some(last)) = (self.knots.first(), self.knots.last()) else {
             return x;
         };
+        let margin = margin.within(x.builder());
         let mut x = x;
-        if b.is_zero(self.slope) {
-            let low = b.sub(first.at, margin);
-            x = b.max(x, low);
+        if self.slope.is_zero() {
+            x = x.max(first.at - margin);
         }
-        let mut after = self.slope;
-        for knot in &self.knots {
-            after = b.add(after, knot.bend);
-        }
-        if b.as_constant(after).is_some_and(|slope| slope.abs() < 1e-6) || self.is_ramp(b) {
-            let high = b.add(last.at, margin);
-            x = b.min(x, high);
+        let after = (self.knots.iter()).fold(self.slope, |slope, knot| slope + knot.bend);
+        if after.as_constant().is_some_and(|slope| slope.abs() < 1e-6) || self.is_ramp() {
+            x = x.min(last.at + margin);
         }
         x
     }
 
     /// Whether bends are differences of neighbouring slopes from 0 to 0, whatever their values.
-    fn is_ramp(&self, b: &Builder) -> bool {
-        b.is_zero(self.slope) && self.knots.len() > 1
+    fn is_ramp(&self) -> bool {
+        self.slope.is_zero() && self.knots.len() > 1
     }
 
-    fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+    fn segments(&self) -> impl Iterator<Item = Segment<'b>> {
         (self.bumps.iter().zip(self.knots.windows(2))).map(|(&bump, pair)| Segment {
             from: pair[0].at,
             to: pair[1].at,
@@ -278,97 +188,51 @@ impl Piecewise {
     }
 }
 
-/// How a ramp goes from stop to stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// The value of the last stop.
-    Constant,
-    /// Straight.
-    Linear,
-    /// 3τ² − 2τ³.
-    Smooth,
-    /// A cubic with continuous slopes that overshoots no stop.
-    Cubic,
-}
-
-impl Transfer for Piecewise {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let zero = b.f32(0.0);
-        let limited = self.limited(b, x, zero);
-        let linear = b.mul(self.slope, limited);
-        let mut sum = b.add(self.offset, linear);
+impl<'b> Transfer<'b> for Piecewise<'b> {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        let limited = self.limited(x, 0.0);
+        let mut sum = self.offset + self.slope * limited;
         for knot in &self.knots {
-            let distance = b.sub(limited, knot.at);
-            let positive = b.max(distance, zero);
-            let rise = b.mul(knot.bend, positive);
-            sum = b.add(sum, rise);
-            let on = b.le(knot.at, x);
-            let jump = b.select(on, knot.jump, zero);
-            sum = b.add(sum, jump);
+            sum += knot.bend * (limited - knot.at).max(0.0);
+            sum += x.ge(knot.at).select(knot.jump, 0.0);
         }
-        for segment in self.segments() {
-            let bump = segment.value(b, x);
-            sum = b.add(sum, bump);
-        }
-        sum
+        (self.segments()).fold(sum, |sum, segment| sum + segment.value(x))
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let t = self.within(b, x.range);
-        let margin = b.scale(x.sd, 8.0);
-        let m = t.limited(b, x.mean, margin);
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let t = self.within(x.range);
+        let m = t.limited(x.mean, x.sd * 8.0);
         let x = &Gaussian { mean: m, ..*x };
-        let linear = b.mul(t.slope, m);
-        let zero = b.f32(0.0);
-        let mut out = Moments {
-            mean: b.add(t.offset, linear),
-            slope: t.slope,
-            curvature: zero,
-            third: zero,
-            distortion: zero,
+        let inverse_variance = x.inverse_sd.square();
+        let zero = m.literal(0.0);
+        // The mean and its derivatives by m.
+        let mut sums = [t.offset + t.slope * m, t.slope, zero, zero];
+        let mut add = |terms: [Float<'b>; 4]| {
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                *sum += term;
+            }
         };
-        let inverse_variance = b.square(x.inverse_sd);
-        for knot in &t.knots {
-            let distance = b.sub(m, knot.at);
-            let n = Normal::at(b, distance, x.inverse_sd);
-            let hinge = n.hinge(b, distance, x.sd);
-            let density = b.mul(n.density, x.inverse_sd);
-            let rise = b.dot(&[knot.jump, knot.bend], &[n.below, hinge]);
-            out.mean = b.add(out.mean, rise);
-            let rise = b.dot(&[knot.jump, knot.bend], &[density, n.below]);
-            out.slope = b.add(out.slope, rise);
-            // (B − J z/σ) φ/σ and (J(z² − 1)/σ − B z) φ/σ².
-            let steep = b.mul(knot.jump, x.inverse_sd);
-            let falling = b.mul(steep, n.z);
-            let bent = b.sub(knot.bend, falling);
-            let bent = b.mul(bent, density);
-            out.curvature = b.add(out.curvature, bent);
-            let square = b.square(n.z);
-            let square = b.offset(square, -1.0);
-            let skewed = b.mul(steep, square);
-            let back = b.mul(knot.bend, n.z);
-            let skewed = b.sub(skewed, back);
-            let weight = b.mul(n.density, inverse_variance);
-            let skewed = b.mul(skewed, weight);
-            out.third = b.add(out.third, skewed);
+        for &Knot { at, jump, bend } in &t.knots {
+            let n = Normal::at(m - at, x.inverse_sd);
+            let hinge = n.hinge(m - at, x.sd);
+            let density = n.density * x.inverse_sd;
+            let steep = jump * x.inverse_sd;
+            add([
+                jump * n.below + bend * hinge,
+                jump * density + bend * n.below,
+                // (B − J z/σ) φ/σ and (J(z² − 1)/σ − B z) φ/σ².
+                (bend - steep * n.z) * density,
+                (steep * (n.z.square() + -1.0) - bend * n.z) * (n.density * inverse_variance),
+            ]);
         }
-        for segment in t.segments() {
-            let bump = segment.moments(b, x);
-            out.mean = b.add(out.mean, bump.mean);
-            out.slope = b.add(out.slope, bump.slope);
-            out.curvature = b.add(out.curvature, bump.curvature);
-            out.third = b.add(out.third, bump.third);
-        }
-        out.distortion = t.distortion(b, x, out.mean, out.slope);
-        out
+        t.segments().for_each(|segment| add(segment.moments(x)));
+        Moments::of(sums, t.distortion(x, sums[0], sums[1]))
     }
 
-    fn shared(&self, b: &mut Builder, range: [f32; 2]) -> Option<SharedTransfer> {
-        let t = self.within(b, range);
+    fn shared(&self, range: [f32; 2]) -> Option<SharedTransfer<'b>> {
+        let t = self.within(range);
         let mut values = smallvec![t.offset, t.slope];
-        for knot in &t.knots {
-            values.extend([knot.at, knot.jump, knot.bend]);
-        }
+        values.extend(t.knots.iter().flat_map(|k| [k.at, k.jump, k.bend]));
         values.extend(t.bumps.iter().flat_map(|bump| [bump.start, bump.end]));
         Some(SharedTransfer {
             name: "piecewise",
@@ -378,41 +242,39 @@ impl Transfer for Piecewise {
             rebuild: |knots, values| {
                 let (line, rest) = values.split_at(2);
                 let (knots, bumps) = rest.split_at(3 * knots as usize);
-                Box::new(Self {
+                let knot = |k: &[_]| Knot {
+                    at: k[0],
+                    jump: k[1],
+                    bend: k[2],
+                };
+                let bump = |p: &[_]| Bump {
+                    start: p[0],
+                    end: p[1],
+                };
+                Box::new(Piecewise {
                     offset: line[0],
                     slope: line[1],
-                    knots: (knots.chunks_exact(3))
-                        .map(|k| Knot {
-                            at: k[0],
-                            jump: k[1],
-                            bend: k[2],
-                        })
-                        .collect(),
-                    bumps: (bumps.chunks_exact(2))
-                        .map(|p| Bump {
-                            start: p[0],
-                            end: p[1],
-                        })
-                        .collect(),
+                    knots: knots.chunks_exact(3).map(knot).collect(),
+                    bumps: bumps.chunks_exact(2).map(bump).collect(),
                 })
             },
         })
     }
 
-    fn binary(&self, b: &Builder) -> Option<[f32; 2]> {
+    fn binary(&self) -> Option<[f32; 2]> {
         let [knot] = self.knots[..] else { return None };
-        let flat = b.is_zero(self.slope) && b.is_zero(knot.bend);
-        let low = b.as_constant(self.offset).filter(|_| flat)?;
-        Some([low, low + b.as_constant(knot.jump)?])
+        let flat = self.slope.is_zero() && knot.bend.is_zero();
+        let low = self.offset.as_constant().filter(|_| flat)?;
+        Some([low, low + knot.jump.as_constant()?])
     }
 
     fn knots(&self) -> u32 {
         self.knots.len() as u32
     }
 
-    fn range(&self, b: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
+    fn range(&self, [low, high]: [f32; 2]) -> [f32; 2] {
         // The extremes are at knots (either side), at the ends, and where the slope of a cubic is 0.
-        let constant = |v: Value| b.as_constant(v);
+        let constant = Float::as_constant;
         let (Some(offset), Some(slope)) = (constant(self.offset), constant(self.slope)) else {
             return UNBOUNDED;
         };

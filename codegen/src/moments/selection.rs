@@ -15,216 +15,177 @@
 //! and covariances for jointly Gaussian signals.
 
 use super::piecewise::{Residual, probability};
-use super::{Algebra, Normal, Signal, spread};
-use crate::ir::{Builder, Value};
+use super::{Algebra, Normal, Piecewise, Signal, spread};
+use crate::ir::{Float, dot};
 
 /// The probability of an interval, and ∫ zφ and ∫ z²φ over it.
-struct Interval {
-    p: Value,
-    first: Value,
-    second: Value,
-    ends: [Normal; 2],
+struct Interval<'b> {
+    p: Float<'b>,
+    first: Float<'b>,
+    second: Float<'b>,
+    ends: [Normal<'b>; 2],
 }
 
-impl Interval {
-    fn new(b: &mut Builder, from: Normal, to: Normal) -> Self {
-        let p = probability(b, &from, &to);
-        let first = b.sub(from.density, to.density);
-        // Standard scores of the ends are −z.
-        let (left, right) = (b.mul(from.z, from.density), b.mul(to.z, to.density));
-        let edge = b.sub(right, left);
+impl<'b> Interval<'b> {
+    fn new(from: Normal<'b>, to: Normal<'b>) -> Self {
+        let p = probability(&from, &to);
         Self {
             p,
-            first,
-            second: b.add(p, edge),
+            first: from.density - to.density,
+            // Standard scores of the ends are −z.
+            second: p + (to.z * to.density - from.z * from.density),
             ends: [from, to],
         }
     }
 }
 
-impl Algebra {
+/// A branch W_k: where it is taken, what it is, and c_k.
+struct Branch<'a, 'b> {
+    interval: Interval<'b>,
+    signal: &'a Signal<'b>,
+    score: Float<'b>,
+}
+
+impl<'b> Algebra<'b> {
     /// `branches[0]` where S is below the first threshold, `branches[k]` from the k-th on.
     ///
     /// # Panics
     /// If there is not one branch more than thresholds: a bug of the caller.
-    pub fn selection(&mut self, s: &Signal, thresholds: &[f32], branches: &[Signal]) -> Signal {
+    pub fn selection(
+        &mut self,
+        s: &Signal<'b>,
+        thresholds: &[f32],
+        branches: &[Signal<'b>],
+    ) -> Signal<'b> {
         assert_eq!(
             branches.len(),
             thresholds.len() + 1,
             "branches of a selection"
         );
-        let s = &s.flat(&mut self.b);
-        let branches: Vec<Signal> = branches.iter().map(|w| w.flat(&mut self.b)).collect();
+        let s = &s.flat();
+        let branches: Vec<Signal<'b>> = branches.iter().map(Signal::flat).collect();
         let range = (branches.iter()).fold([f32::INFINITY, f32::NEG_INFINITY], |range, w| {
             [range[0].min(w.range[0]), range[1].max(w.range[1])]
         });
-        if !self.mode.spreads() || s.is_certain(&self.b) {
-            return self.picked(s, thresholds, &branches, range);
-        }
-        if s.binary.is_some() {
-            return self.switched(s, thresholds, &branches, range);
-        }
+        let out = if !self.mode.spreads() || s.is_certain() {
+            picked(s, thresholds, &branches)
+        } else if s.binary.is_some() {
+            self.switched(s, thresholds, &branches)
+        } else {
+            self.selected(s, thresholds, &branches)
+        };
+        Signal { range, ..out }
+    }
+
+    /// Of a condition with a spread.
+    fn selected(
+        &mut self,
+        s: &Signal<'b>,
+        thresholds: &[f32],
+        branches: &[Signal<'b>],
+    ) -> Signal<'b> {
         self.bent = true;
         self.period = None;
         let s = &self.expose(s);
-        let branches: Vec<Signal> = branches.iter().map(|w| self.expose(w)).collect();
-        let b = &mut self.b;
-        let variance = s.variance(b);
-        let (_, inverse) = spread(b, variance);
-        let intervals = intervals(b, s.mean, inverse, thresholds);
-        // c_k, μ, and the slope by z, of which Σ c_k ∫ z²φ − P_k c_k is the part beyond the branches'.
-        let scores: Vec<Value> = (branches.iter())
-            .map(|w| {
-                let covariance = s.covariance(b, w);
-                b.mul(covariance.total, inverse)
+        let signals: Vec<Signal<'b>> = branches.iter().map(|w| self.expose(w)).collect();
+        let (b, (_, inverse)) = (self.b, spread(s.variance()));
+        let intervals = intervals(s.mean, inverse, thresholds);
+        let branches: Vec<Branch<'_, 'b>> = (intervals.into_iter().zip(&signals))
+            .map(|(interval, signal)| Branch {
+                interval,
+                signal,
+                score: s.covariance(signal).total * inverse,
             })
             .collect();
-        let zero = b.f32(0.0);
-        let (mut mean, mut slope, mut own) = (zero, zero, zero);
-        for ((interval, w), &c) in intervals.iter().zip(&branches).zip(&scores) {
-            let part = b.dot(&[w.mean, c], &[interval.p, interval.first]);
-            mean = b.add(mean, part);
-            let part = b.dot(&[w.mean, c], &[interval.first, interval.second]);
-            slope = b.add(slope, part);
-            let edge = b.sub(interval.second, interval.p);
-            let part = b.dot(&[w.mean, c], &[interval.first, edge]);
-            own = b.add(own, part);
-        }
-        let mut distortion = zero;
-        for ((interval, w), &c) in intervals.iter().zip(&branches).zip(&scores) {
+        // Σ_k m_k u_k + c_k v_k.
+        let sum = |weights: fn(&Interval<'b>) -> [Float<'b>; 2]| {
+            let line = |k: &Branch<'_, 'b>| dot([k.signal.mean, k.score], weights(&k.interval));
+            b.sum(branches.iter().map(line))
+        };
+
+        // μ, and the slope by z, of which Σ c_k ∫ z²φ − P_k c_k is the part beyond the branches'.
+        let mean = sum(|k| [k.p, k.first]);
+        let slope = sum(|k| [k.first, k.second]);
+        let own = sum(|k| [k.first, k.second - k.p]);
+        let distortions = branches.iter().map(|k| {
             let residual = Residual {
-                constant: b.sub(w.mean, mean),
-                slope: b.sub(c, slope),
+                constant: k.signal.mean - mean,
+                slope: k.score - slope,
             };
-            let [from, to] = &interval.ends;
-            let part = residual.between(b, from, to);
-            distortion = b.add(distortion, part);
-        }
+            let [from, to] = &k.interval.ends;
+            residual.between(from, to)
+        });
+        let distortion = b.sum(distortions) + apart(s, &branches, inverse);
+
         // Σ P_k W_k and what S adds to it.
-        let of_s = b.mul(own, inverse);
-        let mut out = s.scale(b, of_s);
-        let mut average = Signal::constant(b, 0.0);
-        for (interval, w) in intervals.iter().zip(&branches) {
-            let part = w.scale(b, interval.p);
-            average = average.add(b, &part);
-        }
-        out = out.add(b, &average);
+        let mut out = s * (own * inverse) + average(&branches);
         out.mean = mean;
-        out.range = range;
-        out.binary = None;
-        let inside = self.apart(s, &intervals, &branches, &scores, inverse);
-        let distortion = self.b.add(distortion, inside);
-        if let [low, high] = &branches[..]
-            && low.is_certain(&self.b)
-            && high.is_certain(&self.b)
-        {
-            out.binary = Some([low.mean, high.mean]);
-        }
+        out.binary = match &signals[..] {
+            [low, high] if low.is_certain() && high.is_certain() => Some([low.mean, high.mean]),
+            _ => None,
+        };
         self.attach_fresh(&mut out, distortion);
         out
-    }
-
-    /// Σ P_k Var(W⊥_k − Σ_j P_j W⊥_j); of two branches P₀P₁ Var(W⊥₁ − W⊥₀).
-    fn apart(
-        &mut self,
-        s: &Signal,
-        intervals: &[Interval],
-        branches: &[Signal],
-        scores: &[Value],
-        inverse: Value,
-    ) -> Value {
-        let b = &mut self.b;
-        let beyond = |b: &mut Builder, w: &Signal, c: Value| {
-            let by = b.mul(c, inverse);
-            let along = s.scale(b, by);
-            w.sub(b, &along).variance(b)
-        };
-        if let ([first, second], [low, high], [c, d]) = (intervals, branches, scores) {
-            let apart = high.sub(b, low);
-            let score = b.sub(*d, *c);
-            let variance = beyond(b, &apart, score);
-            let both = b.mul(first.p, second.p);
-            return b.mul(both, variance);
-        }
-        let (mut average, mut common) = (Signal::constant(b, 0.0), b.f32(0.0));
-        for ((interval, w), &c) in intervals.iter().zip(branches).zip(scores) {
-            let part = w.scale(b, interval.p);
-            average = average.add(b, &part);
-            let part = b.mul(interval.p, c);
-            common = b.add(common, part);
-        }
-        let mut sum = b.f32(0.0);
-        for ((interval, w), &c) in intervals.iter().zip(branches).zip(scores) {
-            let apart = w.sub(b, &average);
-            let score = b.sub(c, common);
-            let variance = beyond(b, &apart, score);
-            let part = b.mul(interval.p, variance);
-            sum = b.add(sum, part);
-        }
-        sum
-    }
-
-    /// Of a condition without spread.
-    fn picked(
-        &mut self,
-        s: &Signal,
-        thresholds: &[f32],
-        branches: &[Signal],
-        range: [f32; 2],
-    ) -> Signal {
-        let b = &mut self.b;
-        let mut out = branches[0].clone();
-        for (&threshold, w) in thresholds.iter().zip(&branches[1..]) {
-            match b.as_constant(s.mean) {
-                Some(at) if at >= threshold => out = w.clone(),
-                Some(_) => {}
-                None => {
-                    let threshold = b.f32(threshold);
-                    let on = b.le(threshold, s.mean);
-                    out = out.select(b, on, w);
-                }
-            }
-        }
-        Signal { range, ..out }
     }
 
     /// Of a condition that takes two values: every indicator is linear in it.
     fn switched(
         &mut self,
-        s: &Signal,
+        s: &Signal<'b>,
         thresholds: &[f32],
-        branches: &[Signal],
-        range: [f32; 2],
-    ) -> Signal {
+        branches: &[Signal<'b>],
+    ) -> Signal<'b> {
         let s = self.expose(s);
         let mut out = self.expose(&branches[0]);
         let mut before = out.clone();
         for (&threshold, w) in thresholds.iter().zip(&branches[1..]) {
-            let at = self.b.f32(threshold);
-            let step = super::Piecewise::step(&mut self.b, at);
-            let mask = self.transfer(&s, &step);
+            let mask = self.transfer(&s, &Piecewise::step(self.b.float(threshold)));
             let w = self.expose(w);
-            let rise = w.sub(&mut self.b, &before);
-            let part = self.product(&mask, &rise);
-            out = out.add(&mut self.b, &part);
+            out = out + self.product(&mask, &(&w - &before));
             before = w;
         }
-        Signal { range, ..out }
+        out
     }
 }
 
-/// The intervals between −∞, the thresholds, and ∞.
-fn intervals(b: &mut Builder, mean: Value, inverse: Value, thresholds: &[f32]) -> Vec<Interval> {
-    let mut edges = vec![b.f32(12.0)];
-    for &threshold in thresholds {
-        let at = b.f32(threshold);
-        let distance = b.sub(mean, at);
-        edges.push(b.mul(distance, inverse));
+/// Σ P_k W_k.
+fn average<'b>(branches: &[Branch<'_, 'b>]) -> Signal<'b> {
+    let nothing = Signal::constant(branches[0].score.builder(), 0.0);
+    (branches.iter()).fold(nothing, |sum, k| sum + k.signal * k.interval.p)
+}
+
+/// Σ P_k Var(W⊥_k − Σ_j P_j W⊥_j); of two branches P₀P₁ Var(W⊥₁ − W⊥₀).
+fn apart<'b>(s: &Signal<'b>, branches: &[Branch<'_, 'b>], inverse: Float<'b>) -> Float<'b> {
+    let beyond = |w: Signal<'b>, c: Float<'b>| (w - s * (c * inverse)).variance();
+    if let [low, high] = branches {
+        let variance = beyond(high.signal - low.signal, high.score - low.score);
+        return low.interval.p * high.interval.p * variance;
     }
-    edges.push(b.f32(-12.0));
-    let normals: Vec<Normal> = edges.into_iter().map(|z| Normal::of(b, z)).collect();
-    normals
-        .windows(2)
-        .map(|pair| Interval::new(b, pair[0], pair[1]))
-        .collect()
+    let average = average(branches);
+    let b = inverse.builder();
+    let common = b.sum(branches.iter().map(|k| k.interval.p * k.score));
+    b.sum((branches.iter()).map(|k| k.interval.p * beyond(k.signal - &average, k.score - common)))
+}
+
+/// Of a condition without spread.
+fn picked<'b>(s: &Signal<'b>, thresholds: &[f32], branches: &[Signal<'b>]) -> Signal<'b> {
+    let mut out = branches[0].clone();
+    for (&threshold, w) in thresholds.iter().zip(&branches[1..]) {
+        match s.mean.as_constant() {
+            Some(at) if at >= threshold => out = w.clone(),
+            Some(_) => {}
+            None => out = out.select(s.mean.ge(threshold), w),
+        }
+    }
+    out
+}
+
+/// The intervals between −∞, the thresholds, and ∞.
+fn intervals<'b>(mean: Float<'b>, inverse: Float<'b>, thresholds: &[f32]) -> Vec<Interval<'b>> {
+    let scores = thresholds.iter().map(|&t| (mean - t) * inverse);
+    let [first, last] = [12.0, -12.0].map(|z| mean.literal(z));
+    let edges = [first].into_iter().chain(scores).chain([last]);
+    let normals: Vec<Normal<'b>> = edges.map(Normal::of).collect();
+    let pairs = normals.windows(2);
+    pairs.map(|pair| Interval::new(pair[0], pair[1])).collect()
 }

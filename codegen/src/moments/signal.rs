@@ -1,8 +1,9 @@
 //! A scalar signal with its first two moments in factored form, and the linear rules.
 
 use super::position;
-use crate::ir::{Builder, Value};
+use crate::ir::{Bool, Builder, Float, Int, Operand, Sym2, Vec2};
 use smallvec::SmallVec;
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// A unit-variance symbol ε that several signals share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -10,29 +11,29 @@ pub struct Symbol(pub u32);
 
 /// A scalar signal: see the module documentation. Coefficients that are absent are the constant 0.
 #[derive(Debug)]
-pub struct Signal {
+pub struct Signal<'b> {
     /// The mean; where `cell` is present, the mean is `cell + mean` and `mean` lies in [0, 1).
-    pub mean: Value,
+    pub mean: Float<'b>,
     /// The integer part of the mean of a position, which keeps its detail far from the origin.
-    pub cell: Option<Value>,
+    pub cell: Option<Int<'b>>,
     /// The linear response to δ.
-    pub g: [Value; 2],
-    /// The quadratic response to δ: H₁₁, H₁₂, H₂₂.
-    pub h: [Value; 3],
+    pub g: Vec2<'b>,
+    /// The quadratic response to δ.
+    pub h: Sym2<'b>,
     /// Coefficients of shared symbols, in the symbols' order.
-    pub shared: SmallVec<[(Symbol, Value); 2]>,
+    pub shared: SmallVec<[(Symbol, Float<'b>); 2]>,
     /// The variance of what nothing else shares.
-    pub private: Value,
+    pub private: Float<'b>,
     /// The least and largest value that the signal takes at any point, as far as is known.
     pub range: [f32; 2],
     /// The two values of a signal that takes no others, such as a step: every function of it is
     /// linear.
-    pub binary: Option<[Value; 2]>,
+    pub binary: Option<[Float<'b>; 2]>,
     /// The symbol of this signal's second Hermite polynomial, where several transfers read it.
     pub hermite: Option<Symbol>,
 }
 
-impl Clone for Signal {
+impl Clone for Signal<'_> {
     fn clone(&self) -> Self {
         Self {
             // Copied as a whole: one by one takes as long as all the rest.
@@ -44,28 +45,31 @@ impl Clone for Signal {
 
 /// The covariance of two signals, split by what carries it.
 #[derive(Clone, Copy, Debug)]
-pub struct Covariance {
+pub struct Covariance<'b> {
     /// The part of g.
-    pub linear: Value,
+    pub linear: Float<'b>,
     /// The part of everything else.
-    pub rest: Value,
+    pub rest: Float<'b>,
     /// The sum.
-    pub total: Value,
+    pub total: Float<'b>,
 }
 
 /// No bound.
 pub(crate) const UNBOUNDED: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
 
-impl Signal {
+/// How many numbers a signal without symbols has: the mean, g, H and the private variance.
+pub(crate) const PARTS: usize = 7;
+
+impl<'b> Signal<'b> {
     /// A signal without spread.
-    pub fn certain(b: &mut Builder, mean: Value) -> Self {
-        let zero = b.f32(0.0);
-        let range = b.as_constant(mean).map_or(UNBOUNDED, |x| [x, x]);
+    pub fn certain(mean: Float<'b>) -> Self {
+        let zero = mean.literal(0.0);
+        let range = mean.as_constant().map_or(UNBOUNDED, |x| [x, x]);
         Self {
             mean,
             cell: None,
-            g: [zero; 2],
-            h: [zero; 3],
+            g: Vec2::splat(zero),
+            h: Sym2::splat(zero),
             shared: SmallVec::new(),
             private: zero,
             range,
@@ -75,9 +79,8 @@ impl Signal {
     }
 
     /// A constant.
-    pub fn constant(b: &mut Builder, x: f32) -> Self {
-        let mean = b.f32(x);
-        Self::certain(b, mean)
+    pub fn constant(b: &'b Builder, x: f32) -> Self {
+        Self::certain(b.float(x))
     }
 
     /// The same with a range.
@@ -85,172 +88,148 @@ impl Signal {
         Self { range, ..self }
     }
 
+    /// The numbers of a signal that carries neither symbols nor a cell: mean, g, H, private variance.
+    pub(crate) fn parts(&self) -> [Float<'b>; PARTS] {
+        let ([gx, gy], [hxx, hxy, hyy]) = (self.g.0, self.h.0);
+        [self.mean, gx, gy, hxx, hxy, hyy, self.private]
+    }
+
+    /// The signal of these numbers.
+    pub(crate) fn of_parts([mean, gx, gy, hxx, hxy, hyy, private]: [Float<'b>; PARTS]) -> Self {
+        Self {
+            g: Vec2([gx, gy]),
+            h: Sym2([hxx, hxy, hyy]),
+            private,
+            ..Self::certain(mean)
+        }
+    }
+
     /// Whether nothing but the mean is carried.
-    pub fn is_certain(&self, b: &Builder) -> bool {
-        let zero = |&v: &Value| b.is_zero(v);
-        self.g.iter().all(zero)
-            && self.h.iter().all(zero)
-            && self.shared.iter().all(|(_, v)| zero(v))
-            && zero(&self.private)
+    pub fn is_certain(&self) -> bool {
+        self.g.iter().all(|v| v.is_zero())
+            && self.h.iter().all(|v| v.is_zero())
+            && self.shared.iter().all(|(_, v)| v.is_zero())
+            && self.private.is_zero()
     }
 
     /// The mean as one number.
-    pub fn flat_mean(&self, b: &mut Builder) -> Value {
+    pub fn flat_mean(&self) -> Float<'b> {
         match self.cell {
             None => self.mean,
-            Some(cell) => {
-                let cell = b.float_i(cell);
-                b.add(cell, self.mean)
-            }
+            Some(cell) => cell.to_float() + self.mean,
         }
     }
 
     /// The same signal with its mean as one number.
-    pub fn flat(&self, b: &mut Builder) -> Self {
+    pub fn flat(&self) -> Self {
         Self {
-            mean: self.flat_mean(b),
+            mean: self.flat_mean(),
             cell: None,
             ..self.clone()
         }
     }
 
     /// |g|².
-    pub fn linear_variance(&self, b: &mut Builder) -> Value {
-        b.dot(&self.g, &self.g)
+    pub fn linear_variance(&self) -> Float<'b> {
+        self.g.norm2()
     }
 
     /// ½‖H‖² + Σ c² + private: the variance beyond the linear response.
-    pub fn other_variance(&self, b: &mut Builder) -> Value {
-        let second = half_contraction(b, self.h, self.h);
-        let own = b.add(second, self.private);
-        let shared = self.shared_variance(b);
-        b.add(own, shared)
+    pub fn other_variance(&self) -> Float<'b> {
+        self.h.half_contraction(self.h) + self.private + self.shared_variance()
     }
 
     /// Σ c²: the variance of shared symbols.
-    pub(super) fn shared_variance(&self, b: &mut Builder) -> Value {
-        let mut sum = b.f32(0.0);
-        for &(_, c) in &self.shared {
-            let square = b.square(c);
-            sum = b.add(sum, square);
-        }
-        sum
+    pub(super) fn shared_variance(&self) -> Float<'b> {
+        let squares = self.shared.iter().map(|(_, c)| c.square());
+        self.mean.builder().sum(squares)
     }
 
     /// The variance.
-    pub fn variance(&self, b: &mut Builder) -> Value {
-        let linear = self.linear_variance(b);
-        let other = self.other_variance(b);
-        b.add(linear, other)
+    pub fn variance(&self) -> Float<'b> {
+        self.linear_variance() + self.other_variance()
     }
 
     /// The covariance with another signal: the dot product of the coefficients.
-    pub fn covariance(&self, b: &mut Builder, other: &Self) -> Covariance {
-        let linear = b.dot(&self.g, &other.g);
-        let second = half_contraction(b, self.h, other.h);
-        let shared = self.shared_covariance(b, other);
-        let rest = b.add(second, shared);
+    pub fn covariance(&self, other: &Self) -> Covariance<'b> {
+        let linear = self.g.dot(other.g);
+        let rest = self.h.half_contraction(other.h) + self.shared_covariance(other);
         Covariance {
             linear,
             rest,
-            total: b.add(linear, rest),
+            total: linear + rest,
         }
     }
 
     /// Σ c d over the symbols that both carry.
-    pub(super) fn shared_covariance(&self, b: &mut Builder, other: &Self) -> Value {
-        let mut sum = b.f32(0.0);
-        for &(symbol, c) in &self.shared {
-            if let Some(d) = other.coefficient(symbol) {
-                let product = b.mul(c, d);
-                sum = b.add(sum, product);
-            }
-        }
-        sum
+    pub(super) fn shared_covariance(&self, other: &Self) -> Float<'b> {
+        let both = |&(symbol, c): &(Symbol, Float<'b>)| Some(c * other.coefficient(symbol)?);
+        self.mean.builder().sum(self.shared.iter().filter_map(both))
     }
 
     /// The coefficient of a shared symbol.
-    pub fn coefficient(&self, symbol: Symbol) -> Option<Value> {
+    pub fn coefficient(&self, symbol: Symbol) -> Option<Float<'b>> {
         self.shared
             .iter()
             .find(|&&(s, _)| s == symbol)
             .map(|&(_, c)| c)
     }
 
-    /// The skewness κ₃/σ³ that g and H carry, limited to ±1 (`inverse_sd` = 1/σ):
-    /// κ₃ = 3 gᵀHg + tr H³. In units of σ, since a footprint's sixth power overflows.
-    pub fn skewness(&self, b: &mut Builder, inverse_sd: Value) -> Value {
-        let [x, y] = self.g.map(|v| b.mul(v, inverse_sd));
-        let [h11, h12, h22] = self.h.map(|v| b.mul(v, inverse_sd));
-        let (xx, xy, yy) = (b.square(x), b.mul(x, y), b.square(y));
-        let xy2 = b.add(xy, xy);
-        let quadratic = b.dot(&[xx, xy2, yy], &[h11, h12, h22]);
-        let quadratic = b.scale(quadratic, 3.0);
-        // tr H³ = h₁₁³ + h₂₂³ + 3 h₁₂² (h₁₁ + h₂₂).
-        let (a2, d2, b2) = (b.square(h11), b.square(h22), b.square(h12));
-        let trace = b.add(h11, h22);
-        let b2 = b.scale(b2, 3.0);
-        let cube = b.dot(&[a2, d2, b2], &[h11, h22, trace]);
-        let skewness = b.add(quadratic, cube);
-        if b.is_zero(skewness) {
-            return skewness;
-        }
-        b.clamp(skewness, -1.0, 1.0)
+    /// The coefficient of a shared symbol, 0 where it is not carried.
+    pub(super) fn coefficient_or_zero(&self, symbol: Symbol) -> Float<'b> {
+        let coefficient = self.coefficient(symbol);
+        coefficient.unwrap_or_else(|| self.mean.literal(0.0))
     }
 
-    /// Every coefficient through `f`, the mean through `mean`, private variances through `private`.
-    fn map(
-        &self,
-        b: &mut Builder,
-        (cell, mean): (Option<Value>, Value),
-        mut f: impl FnMut(&mut Builder, Value) -> Value,
-        private: impl FnOnce(&mut Builder, Value) -> Value,
-    ) -> Self {
+    /// The skewness κ₃/σ³ that g and H carry, limited to ±1 (`inverse_sd` = 1/σ):
+    /// κ₃ = 3 gᵀHg + tr H³. In units of σ, since a footprint's sixth power overflows.
+    pub fn skewness(&self, inverse_sd: Float<'b>) -> Float<'b> {
+        let Vec2([x, y]) = self.g * inverse_sd;
+        let Sym2([h11, h12, h22]) = self.h * inverse_sd;
+        let xy = x * y;
+        let quadratic = (x.square() * h11 + (xy + xy) * h12 + y.square() * h22) * 3.0;
+        // tr H³ = h₁₁³ + h₂₂³ + 3 h₁₂² (h₁₁ + h₂₂).
+        let cube = h11.square() * h11 + h22.square() * h22 + h12.square() * 3.0 * (h11 + h22);
+        let skewness = quadratic + cube;
+        if skewness.is_zero() {
+            return skewness;
+        }
+        skewness.clamp(-1.0, 1.0)
+    }
+
+    /// `by · X` for a number without spread.
+    pub fn scale(&self, by: impl Operand<'b, f32>) -> Self {
+        let by = by.within(self.mean.builder());
+        let known = by.as_constant();
+        if known == Some(1.0) {
+            return self.clone();
+        }
+        let (cell, mean) = position::scale((self.cell, self.mean), by);
+        let [low, high] = self.range;
         Self {
             mean,
             cell,
-            g: self.g.map(|v| f(b, v)),
-            h: self.h.map(|v| f(b, v)),
-            shared: self.shared.iter().map(|&(s, v)| (s, f(b, v))).collect(),
-            private: private(b, self.private),
-            range: UNBOUNDED,
-            binary: None,
+            g: self.g * by,
+            h: self.h * by,
+            shared: self.shared.iter().map(|&(s, c)| (s, c * by)).collect(),
+            private: self.private * by.square(),
+            range: match known {
+                Some(by) if low.is_finite() && high.is_finite() => ordered(low * by, high * by),
+                _ => UNBOUNDED,
+            },
+            binary: self.binary.map(|values| values.map(|v| v * by)),
             hermite: None,
         }
     }
 
-    /// `by · X` for a number without spread.
-    pub fn scale(&self, b: &mut Builder, by: Value) -> Self {
-        if b.as_constant(by) == Some(1.0) {
-            return self.clone();
-        }
-        let mean = position::scale(b, (self.cell, self.mean), by);
-        let mut out = self.map(
-            b,
-            mean,
-            |b, v| b.mul(v, by),
-            |b, v| {
-                let square = b.square(by);
-                b.mul(v, square)
-            },
-        );
-        out.range = match b.as_constant(by) {
-            Some(by) if self.range[0].is_finite() && self.range[1].is_finite() => {
-                ordered(self.range[0] * by, self.range[1] * by)
-            }
-            _ => UNBOUNDED,
-        };
-        out.binary = self.binary.map(|values| values.map(|v| b.mul(v, by)));
-        out
-    }
-
     /// `X + by` for a number without spread.
-    pub fn offset(&self, b: &mut Builder, by: Value) -> Self {
-        if b.is_zero(by) {
+    pub fn offset(&self, by: impl Operand<'b, f32>) -> Self {
+        let by = by.within(self.mean.builder());
+        if by.is_zero() {
             return self.clone();
         }
-        let (cell, mean) = position::add(b, (self.cell, self.mean), (None, by));
-        let range = match b.as_constant(by) {
+        let (cell, mean) = position::add((self.cell, self.mean), (None, by));
+        let range = match by.as_constant() {
             Some(by) => [self.range[0] + by, self.range[1] + by],
             None => UNBOUNDED,
         };
@@ -258,37 +237,26 @@ impl Signal {
             mean,
             cell,
             range,
-            binary: self.binary.map(|values| values.map(|v| b.add(v, by))),
+            binary: self.binary.map(|values| values.map(|v| v + by)),
             hermite: None,
             ..self.clone()
         }
     }
 
     /// `other` where the condition holds, else this.
-    pub(super) fn select(&self, b: &mut Builder, condition: Value, other: &Self) -> Self {
-        let (x, y) = (self.flat(b), other.flat(b));
-        let zero = b.f32(0.0);
-        let mut symbols: SmallVec<[Symbol; 4]> = (x.shared.iter().chain(&y.shared))
-            .map(|&(symbol, _)| symbol)
-            .collect();
-        symbols.sort_unstable();
-        symbols.dedup();
-        let shared = symbols.into_iter().map(|symbol| {
-            let [c, d] = [&x, &y].map(|signal| signal.coefficient(symbol).unwrap_or(zero));
-            (symbol, b.select(condition, d, c))
+    pub(super) fn select(&self, condition: Bool<'b>, other: &Self) -> Self {
+        let (x, y) = (self.flat(), other.flat());
+        let pick = |c: Float<'b>, d: Float<'b>| condition.select(d, c);
+        let shared = symbols_of(&[&x, &y]).into_iter().map(|symbol| {
+            let [c, d] = [&x, &y].map(|signal| signal.coefficient_or_zero(symbol));
+            (symbol, pick(c, d))
         });
-        let shared = shared.collect();
-        let mut pick = |c: Value, d: Value| b.select(condition, d, c);
         Self {
             mean: pick(x.mean, y.mean),
             cell: None,
-            g: [pick(x.g[0], y.g[0]), pick(x.g[1], y.g[1])],
-            h: [
-                pick(x.h[0], y.h[0]),
-                pick(x.h[1], y.h[1]),
-                pick(x.h[2], y.h[2]),
-            ],
-            shared,
+            g: x.g.zip(y.g, pick),
+            h: x.h.zip(y.h, pick),
+            shared: shared.collect(),
             private: pick(x.private, y.private),
             range: [x.range[0].min(y.range[0]), x.range[1].max(y.range[1])],
             binary: None,
@@ -296,27 +264,14 @@ impl Signal {
         }
     }
 
-    /// `−X`.
-    pub fn negate(&self, b: &mut Builder) -> Self {
-        let minus = b.f32(-1.0);
-        self.scale(b, minus)
-    }
-
-    /// `X + Y`: coefficients add.
-    pub fn add(&self, b: &mut Builder, other: &Self) -> Self {
-        let (cell, mean) = position::add(b, (self.cell, self.mean), (other.cell, other.mean));
-        let mut binary = None;
-        for (x, y) in [(self, other), (other, self)] {
-            if let (Some(values), true) = (x.binary, y.is_certain(b) && y.cell.is_none()) {
-                binary = Some(values.map(|v| b.add(v, y.mean)));
-            }
-        }
+    /// What both carry of shared symbols, added.
+    fn shared_sum(&self, other: &Self) -> SmallVec<[(Symbol, Float<'b>); 2]> {
         let mut shared = SmallVec::new();
         let (mut i, mut j) = (0, 0);
         while i < self.shared.len() || j < other.shared.len() {
             match (self.shared.get(i), other.shared.get(j)) {
                 (Some(&(s, c)), Some(&(t, d))) if s == t => {
-                    shared.push((s, b.add(c, d)));
+                    shared.push((s, c + d));
                     (i, j) = (i + 1, j + 1);
                 }
                 (Some(&(s, c)), Some(&(t, _))) if s < t => {
@@ -334,50 +289,11 @@ impl Signal {
                 (None, None) => break,
             }
         }
-        let mut pair = |a: Value, c: Value| b.add(a, c);
-        Self {
-            mean,
-            cell,
-            g: [pair(self.g[0], other.g[0]), pair(self.g[1], other.g[1])],
-            h: [
-                pair(self.h[0], other.h[0]),
-                pair(self.h[1], other.h[1]),
-                pair(self.h[2], other.h[2]),
-            ],
-            private: pair(self.private, other.private),
-            shared,
-            range: [
-                self.range[0] + other.range[0],
-                self.range[1] + other.range[1],
-            ],
-            binary,
-            hermite: None,
-        }
+        shared
     }
 
-    /// `X − Y`.
-    pub fn sub(&self, b: &mut Builder, other: &Self) -> Self {
-        let other = other.negate(b);
-        self.add(b, &other)
-    }
-}
-
-/// ½ A:B of symmetric 2×2 matrices.
-pub(super) fn half_contraction(b: &mut Builder, x: [Value; 3], y: [Value; 3]) -> Value {
-    let (p, q, r) = (b.mul(x[0], y[0]), b.mul(x[2], y[2]), b.mul(x[1], y[1]));
-    let diagonal = b.add(p, q);
-    let diagonal = b.scale(diagonal, 0.5);
-    b.add(diagonal, r)
-}
-
-/// Two numbers in order.
-pub(super) fn ordered(a: f32, b: f32) -> [f32; 2] {
-    if a <= b { [a, b] } else { [b, a] }
-}
-
-impl Signal {
     /// Adds a coefficient of a shared symbol that is not yet carried, or adds to it.
-    pub(super) fn push_shared(&mut self, symbol: Symbol, coefficient: Value) {
+    pub(super) fn push_shared(&mut self, symbol: Symbol, coefficient: Float<'b>) {
         debug_assert!(self.coefficient(symbol).is_none(), "{symbol:?} twice");
         let at = self
             .shared
@@ -388,32 +304,141 @@ impl Signal {
     }
 
     /// Makes one symbol, the first, of those of `symbols` that the signal carries.
-    pub(crate) fn merge(&mut self, b: &mut Builder, symbols: &[Symbol]) {
-        let mine: Vec<(Symbol, Value)> = (self.shared.iter().copied())
+    pub(crate) fn merge(&mut self, symbols: &[Symbol]) {
+        let mine: Vec<(Symbol, Float<'b>)> = (self.shared.iter().copied())
             .filter(|(symbol, _)| symbols.contains(symbol))
             .collect();
-        let [(first, start), rest @ ..] = &mine[..] else {
+        let [(first, _), _, ..] = mine[..] else {
             return;
         };
-        if rest.is_empty() {
-            return;
-        }
-        let mut sum = b.square(*start);
-        for (_, coefficient) in rest {
-            let square = b.square(*coefficient);
-            sum = b.add(sum, square);
-        }
-        let (first, root) = (*first, b.sqrt(sum));
+        let squares = mine.iter().map(|(_, coefficient)| coefficient.square());
+        let root = self.mean.builder().sum(squares).sqrt();
         self.shared.retain(|(symbol, _)| !symbols.contains(symbol));
         self.push_shared(first, root);
     }
 
     /// Folds a shared symbol into the private variance.
-    pub fn retire(&mut self, b: &mut Builder, symbol: Symbol) {
+    pub fn retire(&mut self, symbol: Symbol) {
         if let Some(at) = self.shared.iter().position(|&(s, _)| s == symbol) {
             let (_, coefficient) = self.shared.remove(at);
-            let square = b.square(coefficient);
-            self.private = b.add(self.private, square);
+            self.private += coefficient.square();
         }
     }
+}
+
+/// `X + Y`: coefficients add.
+impl<'b> Add for &Signal<'b> {
+    type Output = Signal<'b>;
+
+    fn add(self, other: Self) -> Signal<'b> {
+        let (cell, mean) = position::add((self.cell, self.mean), (other.cell, other.mean));
+        let mut binary = None;
+        for (x, y) in [(self, other), (other, self)] {
+            if let (Some(values), true) = (x.binary, y.is_certain() && y.cell.is_none()) {
+                binary = Some(values.map(|v| v + y.mean));
+            }
+        }
+        Signal {
+            mean,
+            cell,
+            g: self.g + other.g,
+            h: self.h + other.h,
+            private: self.private + other.private,
+            shared: self.shared_sum(other),
+            range: [
+                self.range[0] + other.range[0],
+                self.range[1] + other.range[1],
+            ],
+            binary,
+            hermite: None,
+        }
+    }
+}
+
+/// `−X`.
+impl<'b> Neg for &Signal<'b> {
+    type Output = Signal<'b>;
+
+    fn neg(self) -> Signal<'b> {
+        self.scale(-1.0)
+    }
+}
+
+/// `X − Y`.
+impl<'b> Sub for &Signal<'b> {
+    type Output = Signal<'b>;
+
+    fn sub(self, other: Self) -> Signal<'b> {
+        self + &-other
+    }
+}
+
+/// `X · by` for a number without spread.
+impl<'b, R: Operand<'b, f32>> Mul<R> for &Signal<'b> {
+    type Output = Signal<'b>;
+
+    fn mul(self, by: R) -> Signal<'b> {
+        self.scale(by)
+    }
+}
+
+/// The same operators for signals that are not needed any more.
+macro_rules! owned {
+    ($($trait:ident $method:ident;)*) => {
+        $(impl<'b> $trait for Signal<'b> {
+            type Output = Self;
+
+            fn $method(self, other: Self) -> Self {
+                (&self).$method(&other)
+            }
+        }
+
+        impl<'b> $trait<&Self> for Signal<'b> {
+            type Output = Self;
+
+            fn $method(self, other: &Self) -> Self {
+                (&self).$method(other)
+            }
+        }
+
+        impl<'b> $trait<Signal<'b>> for &Signal<'b> {
+            type Output = Signal<'b>;
+
+            fn $method(self, other: Signal<'b>) -> Signal<'b> {
+                self.$method(&other)
+            }
+        })*
+    };
+}
+
+owned! { Add add; Sub sub; }
+
+impl Neg for Signal<'_> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        -&self
+    }
+}
+
+impl<'b, R: Operand<'b, f32>> Mul<R> for Signal<'b> {
+    type Output = Self;
+
+    fn mul(self, by: R) -> Self {
+        self.scale(by)
+    }
+}
+
+/// The symbols that signals carry, in order.
+pub(super) fn symbols_of(signals: &[&Signal<'_>]) -> SmallVec<[Symbol; 8]> {
+    let all = signals.iter().flat_map(|signal| &signal.shared);
+    let mut symbols: SmallVec<[Symbol; 8]> = all.map(|&(symbol, _)| symbol).collect();
+    symbols.sort_unstable();
+    symbols.dedup();
+    symbols
+}
+
+/// Two numbers in order.
+pub(super) fn ordered(a: f32, b: f32) -> [f32; 2] {
+    if a <= b { [a, b] } else { [b, a] }
 }

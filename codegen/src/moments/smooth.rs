@@ -2,9 +2,11 @@
 
 use super::{
     Curve, Gaussian, Moments, SharedTransfer, Transfer,
+    curve::scores,
     signal::{UNBOUNDED, ordered},
+    wave::nearest,
 };
-use crate::ir::{Builder, Value};
+use crate::ir::Float;
 use smallvec::SmallVec;
 
 /// sin(x + phase), x in radians. E[sin] = sin(m) e^{−v/2}; exact for a Gaussian.
@@ -16,65 +18,43 @@ pub struct Sine {
 
 impl Sine {
     /// Sine and cosine of x + phase, reduced to one turn first, so that every device agrees.
-    fn pair(self, b: &mut Builder, x: Value) -> (Value, Value) {
-        let turns = b.scale(x, 1.0 / std::f32::consts::TAU);
-        let turns = b.offset(turns, self.phase / std::f32::consts::TAU);
-        let rounded = b.offset(turns, 0.5);
-        let whole = b.floor(rounded);
-        let turn = b.sub(turns, whole);
-        let angle = b.scale(turn, std::f32::consts::TAU);
-        (b.sin(angle), b.cos(angle))
+    fn pair(self, x: Float<'_>) -> [Float<'_>; 2] {
+        use std::f32::consts::TAU;
+        let [_, turn] = nearest(x * (1.0 / TAU) + self.phase / TAU);
+        let angle = turn * TAU;
+        [angle.sin(), angle.cos()]
     }
 }
 
-impl Transfer for Sine {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        self.pair(b, x).0
+impl<'b> Transfer<'b> for Sine {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        self.pair(x)[0]
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let (sine, cosine) = self.pair(b, x.mean);
-        let limit = b.f32(160.0);
-        let v = b.min(x.variance, limit);
-        let half = b.scale(v, -0.5);
-        let damping = b.exp(half);
-        let (mean, slope) = (b.mul(sine, damping), b.mul(cosine, damping));
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let [sine, cosine] = self.pair(x.mean);
+        let v = x.variance.min(160.0);
+        let damping = (v * -0.5).exp();
+        let (mean, slope) = (sine * damping, cosine * damping);
         // D = cos² e^{−v}(sinh v − v) + ½ sin² (1 − e^{−v})².
-        let square = b.square(damping);
-        let one = b.f32(1.0);
-        let lost = b.sub(one, square);
-        let lost = b.square(lost);
-        let lost = b.scale(lost, 0.5);
+        let square = damping.square();
+        let even = (1.0 - square).square() * 0.5;
         // e^{−v}(sinh v − v): by its series below 1, where the difference cancels.
-        let v2 = b.square(v);
-        let series = b.scale(v2, 1.0 / 42.0);
-        let series = b.offset(series, 1.0);
-        let series = b.mul(series, v2);
-        let series = b.scale(series, 1.0 / 20.0);
-        let series = b.offset(series, 1.0);
-        let v3 = b.mul(v2, v);
-        let series = b.mul(series, v3);
-        let series = b.scale(series, 1.0 / 6.0);
-        let series = b.mul(series, square);
-        let fourth = b.square(square);
-        let direct = b.sub(one, fourth);
-        let direct = b.scale(direct, 0.5);
-        let linear = b.mul(v, square);
-        let direct = b.sub(direct, linear);
-        let small = b.lt(v, one);
-        let odd = b.select(small, series, direct);
-        let (c2, s2) = (b.square(cosine), b.square(sine));
-        let distortion = b.dot(&[c2, s2], &[odd, lost]);
+        let v2 = v.square();
+        let series = (v2 * (1.0 / 42.0) + 1.0) * v2 * (1.0 / 20.0) + 1.0;
+        let series = series * (v2 * v) * (1.0 / 6.0) * square;
+        let direct = (1.0 - square.square()) * 0.5 - v * square;
+        let odd = v.lt(1.0).select(series, direct);
         Moments {
             mean,
             slope,
-            curvature: b.neg(mean),
-            third: b.neg(slope),
-            distortion,
+            curvature: -mean,
+            third: -slope,
+            distortion: cosine.square() * odd + sine.square() * even,
         }
     }
 
-    fn range(&self, _: &Builder, _: [f32; 2]) -> [f32; 2] {
+    fn range(&self, _: [f32; 2]) -> [f32; 2] {
         [-1.0, 1.0]
     }
 
@@ -82,7 +62,7 @@ impl Transfer for Sine {
         Some(std::f32::consts::TAU)
     }
 
-    fn shared(&self, _: &mut Builder, _: [f32; 2]) -> Option<SharedTransfer> {
+    fn shared(&self, _: [f32; 2]) -> Option<SharedTransfer<'b>> {
         (self.phase == 0.0).then(|| SharedTransfer {
             name: "sine",
             doc: "The sine of a signal.",
@@ -97,47 +77,27 @@ impl Transfer for Sine {
 #[derive(Clone, Copy, Debug)]
 pub struct Exponential;
 
-impl Transfer for Exponential {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let x = b.clamp(x, -80.0, 80.0);
-        b.exp(x)
+impl<'b> Transfer<'b> for Exponential {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        x.clamp(-80.0, 80.0).exp()
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let half = b.scale(x.variance, 0.5);
-        let exponent = b.add(x.mean, half);
-        let mean = self.value(b, exponent);
-        // eᵛ − 1 − v = v²/2 (1 + v/3 (1 + v/4 (1 + …))): by its series below 1, where it cancels.
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let v = x.variance;
-        let one = b.f32(1.0);
-        let mut series = one;
-        for k in (3..=9).rev() {
-            let term = b.scale(v, 1.0 / k as f32);
-            let term = b.mul(term, series);
-            series = b.add(one, term);
-        }
-        let square = b.square(v);
-        let square = b.scale(square, 0.5);
-        let series = b.mul(square, series);
-        let direct = self.value(b, v);
-        let beyond = b.offset(v, 1.0);
-        let direct = b.sub(direct, beyond);
-        let small = b.lt(v, one);
-        let excess = b.select(small, series, direct);
-        let zero = b.f32(0.0);
-        let excess = b.max(excess, zero);
+        let mean = self.value(x.mean + v * 0.5);
+        // eᵛ − 1 − v = v²/2 (1 + v/3 (1 + v/4 (1 + …))): by its series below 1, where it cancels.
+        let one = v.literal(1.0);
+        let factor = (3..=9)
+            .rev()
+            .fold(one, |sum, k| one + v * (1.0 / k as f32) * sum);
+        let series = v.square() * 0.5 * factor;
+        let direct = self.value(v) - (v + 1.0);
+        let excess = v.lt(1.0).select(series, direct).max(0.0);
         // M · (M · excess): the square of M alone overflows first.
-        let distortion = b.mul(mean, excess);
-        Moments {
-            mean,
-            slope: mean,
-            curvature: mean,
-            third: mean,
-            distortion: b.mul(mean, distortion),
-        }
+        Moments::of([mean; 4], mean * (mean * excess))
     }
 
-    fn range(&self, _: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
+    fn range(&self, [low, high]: [f32; 2]) -> [f32; 2] {
         if high > 80.0 {
             [low.exp(), f32::INFINITY]
         } else {
@@ -159,13 +119,10 @@ impl Polynomial {
     pub const MOST: u32 = 8;
 
     /// E[xᵏ] for every k up to the power, by E[xᵏ] = m E[xᵏ⁻¹] + (k − 1) v E[xᵏ⁻²].
-    fn raw(self, b: &mut Builder, m: Value, v: Value) -> Vec<Value> {
-        let mut raw = vec![b.f32(1.0), m];
+    fn raw<'b>(self, m: Float<'b>, v: Float<'b>) -> Vec<Float<'b>> {
+        let mut raw = vec![m.literal(1.0), m];
         for k in 2..=self.power as usize {
-            let first = b.mul(m, raw[k - 1]);
-            let second = b.mul(v, raw[k - 2]);
-            let second = b.scale(second, (k - 1) as f32);
-            raw.push(b.add(first, second));
+            raw.push(m * raw[k - 1] + v * raw[k - 2] * (k - 1) as f32);
         }
         raw
     }
@@ -176,43 +133,29 @@ impl Polynomial {
     }
 }
 
-impl Transfer for Polynomial {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let mut out = b.f32(1.0);
-        for _ in 0..self.power {
-            out = b.mul(out, x);
-        }
-        out
+impl<'b> Transfer<'b> for Polynomial {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        (0..self.power).fold(x.literal(1.0), |product, _| product * x)
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let n = self.power;
-        let raw = self.raw(b, x.mean, x.variance);
-        let derivative = |b: &mut Builder, k: u32| match n.checked_sub(k) {
-            Some(rest) => b.scale(raw[rest as usize], self.falling(k)),
-            None => b.f32(0.0),
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let (n, zero) = (self.power, x.mean.literal(0.0));
+        let raw = self.raw(x.mean, x.variance);
+        let derivative = |k: u32| match n.checked_sub(k) {
+            Some(rest) => raw[rest as usize] * self.falling(k),
+            None => zero,
         };
-        let mut distortion = b.f32(0.0);
+        let mut distortion = zero;
         let (mut power, mut factorial) = (x.variance, 1.0);
         for k in 2..=n {
-            power = b.mul(power, x.variance);
+            power *= x.variance;
             factorial *= k as f32;
-            let d = derivative(b, k);
-            let d = b.square(d);
-            let part = b.mul(power, d);
-            let part = b.scale(part, 1.0 / factorial);
-            distortion = b.add(distortion, part);
+            distortion += power * derivative(k).square() * (1.0 / factorial);
         }
-        Moments {
-            mean: raw[n as usize],
-            slope: derivative(b, 1),
-            curvature: derivative(b, 2),
-            third: derivative(b, 3),
-            distortion,
-        }
+        Moments::of([0, 1, 2, 3].map(derivative), distortion)
     }
 
-    fn range(&self, _: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
+    fn range(&self, [low, high]: [f32; 2]) -> [f32; 2] {
         let n = self.power as i32;
         let (p, q) = (low.powi(n), high.powi(n));
         match (n % 2 == 0, low <= 0.0 && high >= 0.0) {
@@ -223,113 +166,57 @@ impl Transfer for Polynomial {
     }
 }
 
-/// Seven equidistant standard scores with Gaussian weights of unit sum and variance: exact to 2e-5
-/// for functions that are smooth over σ, at positive weights.
-fn nodes() -> [(f32, f32); 7] {
-    let scores: [f64; 7] = std::array::from_fn(|i| (i as f64 - 3.0) * 1.25);
-    let weights = scores.map(|z| (-0.5 * z * z).exp());
-    let total: f64 = weights.iter().sum();
-    let variance: f64 = scores
-        .iter()
-        .zip(&weights)
-        .map(|(z, w)| z * z * w / total)
-        .sum();
-    std::array::from_fn(|i| {
-        (
-            (scores[i] / variance.sqrt()) as f32,
-            (weights[i] / total) as f32,
-        )
-    })
-}
-
-/// The moments of a smooth function with known derivatives, by [`nodes`].
-fn sampled(
-    b: &mut Builder,
-    mean: Value,
-    sd: Value,
-    mut derivatives: impl FnMut(&mut Builder, Value) -> [Value; 4],
-) -> Moments {
-    let zero = b.f32(0.0);
-    let mut sums = [zero; 4];
-    let mut values = Vec::with_capacity(7);
-    for (score, weight) in nodes() {
-        let step = b.scale(sd, score);
-        let x = b.add(mean, step);
-        let d = derivatives(b, x);
-        for (sum, d) in sums.iter_mut().zip(d) {
-            let part = b.scale(d, weight);
-            *sum = b.add(*sum, part);
+/// The moments of a smooth function with known derivatives, by seven equidistant standard scores: exact
+/// to 2e-5 for functions that are smooth over σ, at positive weights.
+fn sampled<'b>(
+    mean: Float<'b>,
+    sd: Float<'b>,
+    derivatives: impl Fn(Float<'b>) -> [Float<'b>; 4],
+) -> Moments<'b> {
+    let mut sums = [mean.literal(0.0); 4];
+    let nodes = scores::<7>(1.25).map(|(score, weight)| {
+        let step = sd * score;
+        let terms = derivatives(mean + step);
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum += term * weight;
         }
-        values.push((d[0], step, weight));
-    }
-    let mut distortion = zero;
-    for (value, step, weight) in values {
-        let line = b.mul(sums[1], step);
-        let line = b.add(sums[0], line);
-        let residual = b.sub(value, line);
-        let square = b.square(residual);
-        let part = b.scale(square, weight);
-        distortion = b.add(distortion, part);
-    }
-    let [mean, slope, curvature, third] = sums;
-    Moments {
-        mean,
-        slope,
-        curvature,
-        third,
-        distortion,
-    }
+        (terms[0], step, weight)
+    });
+    let parts = nodes.map(|(value, step, weight)| {
+        let residual = value - (sums[0] + sums[1] * step);
+        residual.square() * weight
+    });
+    Moments::of(sums, mean.builder().sum(parts))
 }
 
 /// max(x, 0) to a real power. By the quadrature of [`Curve`] over the part above 0: the mean is
 /// within 1e-3 of (|m| + σ)ᵖ for powers from 0.5 to 3.5.
 #[derive(Clone, Copy, Debug)]
-pub struct RealPower {
+pub struct RealPower<'b> {
     /// The exponent.
-    pub power: Value,
+    pub power: Float<'b>,
 }
 
-impl RealPower {
-    /// max(x, `least`) to the power.
-    fn raise(b: &mut Builder, x: Value, power: Value) -> Value {
-        let least = b.f32(1e-9);
-        let positive = b.max(x, least);
-        let log = b.ln(positive);
-        let exponent = b.mul(log, power);
-        let exponent = b.clamp(exponent, -80.0, 80.0);
-        b.exp(exponent)
+impl<'b> Transfer<'b> for RealPower<'b> {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        let raised = (x.max(1e-9).ln() * self.power).clamp(-80.0, 80.0).exp();
+        let at_zero = self.power.le(0.0).select(1.0, 0.0);
+        x.gt(0.0).select(raised, at_zero)
     }
 
-    fn curve(self, b: &mut Builder) -> Curve<impl Fn(&mut Builder, Value) -> Value + use<>> {
-        let zero = b.f32(0.0);
-        let below = self.value(b, zero);
-        Curve {
-            function: move |b: &mut Builder, x| self.value(b, x),
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let zero = x.mean.literal(0.0);
+        let curve = Curve {
+            function: |x| self.value(x),
             kinks: vec![zero],
-            flat: [Some(below), None],
+            flat: [Some(self.value(zero)), None],
             range: UNBOUNDED,
-        }
-    }
-}
-
-impl Transfer for RealPower {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let raised = Self::raise(b, x, self.power);
-        let zero = b.f32(0.0);
-        let positive = b.lt(zero, x);
-        let none = b.le(self.power, zero);
-        let one = b.f32(1.0);
-        let at_zero = b.select(none, one, zero);
-        b.select(positive, raised, at_zero)
+        };
+        curve.moments(x)
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let curve = self.curve(b);
-        curve.moments(b, x)
-    }
-
-    fn range(&self, b: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
-        match b.as_constant(self.power) {
+    fn range(&self, [low, high]: [f32; 2]) -> [f32; 2] {
+        match self.power.as_constant() {
             Some(p) if p > 0.0 => [low.max(0.0).powf(p), high.max(0.0).powf(p)],
             _ => UNBOUNDED,
         }
@@ -343,39 +230,28 @@ pub struct Reciprocal;
 
 impl Reciprocal {
     /// x moved away from 0 to at least `least`.
-    fn guarded(b: &mut Builder, x: Value, least: Value) -> Value {
-        let zero = b.f32(0.0);
-        let negative = b.lt(x, zero);
-        let minus = b.neg(least);
-        let (below, above) = (b.min(x, minus), b.max(x, least));
-        b.select(negative, below, above)
+    fn guarded<'b>(x: Float<'b>, least: Float<'b>) -> Float<'b> {
+        x.lt(0.0).select(x.min(-least), x.max(least))
     }
 }
 
-impl Transfer for Reciprocal {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let least = b.f32(1e-6);
-        let x = Self::guarded(b, x, least);
-        let one = b.f32(1.0);
-        b.div(one, x)
+impl<'b> Transfer<'b> for Reciprocal {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        1.0 / Self::guarded(x, x.literal(1e-6))
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let least = b.scale(x.sd, 4.0);
-        let least = b.offset(least, 1e-6);
-        let mean = Self::guarded(b, x.mean, least);
-        sampled(b, mean, x.sd, |b, at| {
-            let one = b.f32(1.0);
-            let value = b.div(one, at);
-            let minus = b.neg(value);
-            let first = b.mul(value, minus);
-            let second = b.mul(first, minus);
-            let third = b.mul(second, minus);
-            [value, first, b.scale(second, 2.0), b.scale(third, 6.0)]
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let mean = Self::guarded(x.mean, x.sd * 4.0 + 1e-6);
+        sampled(mean, x.sd, |at| {
+            let value = 1.0 / at;
+            let first = value * -value;
+            let second = first * -value;
+            let third = second * -value;
+            [value, first, second * 2.0, third * 6.0]
         })
     }
 
-    fn range(&self, _: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
+    fn range(&self, [low, high]: [f32; 2]) -> [f32; 2] {
         if low > 0.0 || high < 0.0 {
             ordered(1.0 / low, 1.0 / high)
         } else {

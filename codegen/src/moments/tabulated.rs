@@ -7,7 +7,7 @@
 
 use super::branch::Branch;
 use super::{Gaussian, Moments, Transfer};
-use crate::ir::{Builder, FunctionRef, Module, Numbers, Value};
+use crate::ir::{Bool, Float, FunctionRef, Module, Numbers, Uint};
 use std::sync::{Arc, LazyLock};
 
 /// σ₀, in domains.
@@ -44,13 +44,8 @@ impl Sampled {
         assert_eq!(values.len(), SAMPLES, "samples of a function");
         let mut mips = vec![values];
         for _ in 0..LEVELS / 2 {
-            let finer = mips.last().expect("the samples");
-            mips.push(
-                finer
-                    .chunks(2)
-                    .map(|pair| 0.5 * (pair[0] + pair[1]))
-                    .collect(),
-            );
+            let finer = mips.last().expect("the samples").chunks(2);
+            mips.push(finer.map(|pair| 0.5 * (pair[0] + pair[1])).collect());
         }
         Self { mips, periodic }
     }
@@ -81,22 +76,13 @@ impl Sampled {
     /// One level, from the samples that are 8 or 11 a σ; every texel has the same weights.
     fn level(&self, level: usize, moment: Moment) -> Vec<f32> {
         let mip = level / 2;
-        // Averages over 2ᵐ samples have the variance of a box that the kernel need not add.
-        let cell = (1u64 << mip) as f64;
-        let wanted = sigma(level) * SAMPLES as f64 / cell;
-        let sd = (wanted * wanted - (1.0 - 1.0 / (cell * cell)) / 12.0).sqrt();
+        let sd = deviation(sigma(level), SAMPLES, SAMPLES >> mip);
         let reach = (REACH * sd).ceil() as i64;
         // Sample i stands at i + ½, texel j at 4j: the score of sample 4j + k is (k + ½)/σ.
         let scores: Vec<f64> = (-reach..reach).map(|k| (k as f64 + 0.5) / sd).collect();
-        let mut weights: Vec<f64> = scores.iter().map(|z| (-0.5 * z * z).exp()).collect();
-        let total: f64 = weights.iter().sum();
-        weights.iter_mut().for_each(|w| *w /= total);
+        let weights = gaussian(&scores);
         let weighted = |f: fn(f64) -> f64| -> Vec<f64> {
-            scores
-                .iter()
-                .zip(&weights)
-                .map(|(&z, w)| f(z) * w)
-                .collect()
+            (scores.iter().zip(&weights).map(|(&z, w)| f(z) * w)).collect()
         };
         let first = weighted(|z| z);
         let kernel = match moment {
@@ -162,9 +148,7 @@ impl Sampled {
     /// A moment at a place and a σ of the domain, from the samples of a mip.
     fn exact(&self, mip: usize, u: f64, sigma: f64, moment: Moment) -> f64 {
         let samples = &self.mips[mip];
-        let cell = (1u64 << mip) as f64;
-        let wanted = sigma * samples.len() as f64;
-        let sd = (wanted * wanted - (1.0 - 1.0 / (cell * cell)) / 12.0).sqrt();
+        let sd = deviation(sigma, SAMPLES, samples.len());
         let at = u * samples.len() as f64;
         let reach = (at - REACH * sd).floor() as i64..=(at + REACH * sd).ceil() as i64;
         let terms: Vec<[f64; 3]> = reach
@@ -198,6 +182,22 @@ fn texels(level: usize) -> usize {
 /// σ of a level, in domains.
 fn sigma(level: usize) -> f64 {
     FINEST * (level as f64 / 2.0).exp2()
+}
+
+/// The standard deviation, in samples, of a Gaussian over `count` averages of `samples` samples so
+/// that the whole has the σ, in domains: each average has the variance of a box that the kernel need
+/// not add.
+pub(super) fn deviation(sigma: f64, samples: usize, count: usize) -> f64 {
+    let (cell, wanted) = ((samples / count) as f64, sigma * count as f64);
+    (wanted * wanted - (1.0 - 1.0 / (cell * cell)) / 12.0).sqrt()
+}
+
+/// The weights of a Gaussian at standard scores; their sum is 1.
+pub(super) fn gaussian(scores: &[f64]) -> Vec<f64> {
+    let mut weights: Vec<f64> = scores.iter().map(|z| (-0.5 * z * z).exp()).collect();
+    let total: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|w| *w /= total);
+    weights
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -263,139 +263,102 @@ impl Tabulated {
 }
 
 /// Where a pyramid is read: the two levels' texels and how they mix.
-struct Place {
+struct Place<'b> {
     /// For each of the two levels: the index of the left texel and the share of the right one.
-    texels: [(Value, Value); 2],
+    texels: [(Uint<'b>, Float<'b>); 2],
     /// The share of the coarser level.
-    mix: Value,
+    mix: Float<'b>,
     /// Whether σ is below σ₀, and the share of the finest level then.
-    below: Value,
-    share: Value,
+    below: Bool<'b>,
+    share: Float<'b>,
 }
 
 impl Tabulated {
-    fn place(&self, b: &mut Builder, x: &Gaussian) -> Place {
-        let width = self.domain[1] - self.domain[0];
+    fn place<'b>(&self, x: &Gaussian<'b>) -> Place<'b> {
         let [low, high] = self.domain;
+        let width = high - low;
+        let within = |x: Float<'b>| (x + -low) * (1.0 / width);
         let u = if self.periodic {
-            let u = b.offset(x.mean, -low);
-            let u = b.scale(u, 1.0 / width);
-            let whole = b.floor(u);
-            b.sub(u, whole)
+            let turns = within(x.mean);
+            turns - turns.floor()
         } else {
-            let inside = b.clamp(x.mean, low, high);
-            let u = b.offset(inside, -low);
-            b.scale(u, 1.0 / width)
+            within(x.mean.clamp(low, high))
         };
-        let s = b.scale(x.sd, 1.0 / width);
-        let coarsest = sigma(LEVELS - 1) as f32;
-        let ratio = b.clamp(s, FINEST as f32, coarsest);
-        // l = 2 log₂(σ/σ₀).
-        let ratio = b.scale(ratio, 1.0 / FINEST as f32);
-        let log = b.ln(ratio);
-        let level = b.scale(log, 2.0 / std::f32::consts::LN_2);
-        let level = b.floor(level);
-        let level = b.clamp(level, 0.0, (LEVELS - 2) as f32);
-        // Linear in σ: (σ/σ_l − 1)/(√2 − 1).
-        let exponent = b.scale(level, -0.5 * std::f32::consts::LN_2);
-        let down = b.exp(exponent);
-        let relative = b.mul(ratio, down);
-        let mix = b.offset(relative, -1.0);
-        let mix = b.scale(mix, 1.0 / (std::f32::consts::SQRT_2 - 1.0));
-        let mix = b.clamp(mix, 0.0, 1.0);
-        let row = b.trunc_i(level);
-        let row = b.cast_u(row);
+        let s = x.sd * (1.0 / width);
+        let (finest, coarsest) = (FINEST as f32, sigma(LEVELS - 1) as f32);
+        let ratio = s.clamp(finest, coarsest) * (1.0 / finest);
+        let (level, mix) = half_octave(ratio, LEVELS - 2);
+        let row = level.to_int().to_uint();
+
         // A level of n + 1 texels, n = SAMPLES/4 halved every other level, starts after those before:
         // at SAMPLES − 4n + l, and at n more where l is odd.
-        let (one, four) = (b.u32(1), b.u32(4));
-        let halved = b.shr_u(row, one);
-        let odd = b.and_u(row, one);
-        let quarter = b.u32((SAMPLES / 4) as u32);
-        let fine = b.shr_u(quarter, halved);
-        let (all, own) = (b.u32(SAMPLES as u32), b.mul_u(fine, four));
-        let before = b.sub_u(all, own);
-        let before = b.add_u(before, row);
-        let other = b.mul_u(odd, fine);
-        let first = b.add_u(before, other);
-        let next = b.add_u(first, fine);
-        let next = b.add_u(next, one);
-        let coarse = b.shr_u(fine, odd);
-        let texels = [(fine, first), (coarse, next)].map(|(last, first)| {
-            let last = b.float_u(last);
-            let at = b.mul(u, last);
-            let left = b.floor(at);
+        const QUARTER: u32 = (SAMPLES / 4) as u32;
+        let odd = row & 1;
+        let fine = QUARTER >> (row >> 1);
+        let first = SAMPLES as u32 - fine * 4 + row + odd * fine;
+        let next = first + fine + 1;
+        let texels = [(fine, first), (fine >> odd, next)].map(|(last, first)| {
+            let last = last.to_float();
+            let at = u * last;
             // The last interval includes its end.
-            let limit = b.offset(last, -1.0);
-            let left = b.min(left, limit);
-            let share = b.sub(at, left);
-            let left = b.trunc_i(left);
-            let left = b.cast_u(left);
-            (b.add_u(first, left), share)
+            let left = at.floor().min(last + -1.0);
+            (first + left.to_int().to_uint(), at - left)
         });
-        let finest = b.f32(FINEST as f32);
-        let below = b.lt(s, finest);
-        let share = b.scale(s, 1.0 / FINEST as f32);
         Place {
             texels,
-            mix,
-            below,
-            share,
+            mix: mix.clamp(0.0, 1.0),
+            below: s.lt(finest),
+            share: s * (1.0 / finest),
         }
     }
 
     /// The moment at the place.
-    fn read(&self, b: &mut Builder, place: &Place, moment: Moment) -> Value {
-        let table = self.tables[moment as usize];
-        let [fine, coarse] = place.texels.map(|(index, share)| {
-            let one = b.u32(1);
-            let next = b.add_u(index, one);
-            let (left, right) = (b.load(table, index), b.load(table, next));
-            lerp(b, left, right, share)
-        });
-        lerp(b, fine, coarse, place.mix)
+    fn read<'b>(&self, place: &Place<'b>, moment: Moment) -> Float<'b> {
+        let (b, table) = (place.mix.builder(), self.tables[moment as usize]);
+        let [fine, coarse] = place
+            .texels
+            .map(|(index, share)| lerp(b.load(table, index), b.load(table, index + 1), share));
+        lerp(fine, coarse, place.mix)
     }
 }
 
-fn lerp(b: &mut Builder, from: Value, to: Value, share: Value) -> Value {
-    let difference = b.sub(to, from);
-    let part = b.mul(difference, share);
-    b.add(from, part)
+/// The level l = 2 log₂ ratio of σ_l = 2^{l/2}, rounded down and limited to `[0, most]`, and the
+/// share of the next one, linear in σ and not limited: (σ/σ_l − 1)/(√2 − 1).
+pub(super) fn half_octave(ratio: Float<'_>, most: usize) -> (Float<'_>, Float<'_>) {
+    use std::f32::consts::{LN_2, SQRT_2};
+    let level = (ratio.ln() * (2.0 / LN_2)).floor().clamp(0.0, most as f32);
+    let relative = ratio * (level * (-0.5 * LN_2)).exp();
+    (level, (relative + -1.0) * (1.0 / (SQRT_2 - 1.0)))
 }
 
-impl Transfer for Tabulated {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        b.call(&self.function, &[x])[self.component]
+pub(super) fn lerp<'b>(from: Float<'b>, to: Float<'b>, share: Float<'b>) -> Float<'b> {
+    from + (to - from) * share
+}
+
+impl<'b> Transfer<'b> for Tabulated {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        x.builder().call(&self.function, x)[self.component]
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let place = self.place(b, x);
-        let read = |b: &mut Builder, moment| self.read(b, &place, moment);
-        let mean = read(b, Moment::Mean);
-        let exact = self.branch.taken(b, place.below, &[x.mean])[self.component];
-        let near = lerp(b, exact, mean, place.share);
-        let mean = b.select(place.below, near, mean);
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let place = self.place(x);
+        let read = |moment| self.read(&place, moment);
+        let mean = read(Moment::Mean);
+        let exact = self.branch.taken(place.below, x.mean)[self.component];
+        let near = lerp(exact, mean, place.share);
         // What is stored is relative to σ; below σ₀ the derivatives are those at σ₀.
         let width = self.domain[1] - self.domain[0];
-        let finest = b.f32(FINEST as f32 * width);
-        let sd = b.max(x.sd, finest);
-        let one = b.f32(1.0);
-        let inverse = b.div(one, sd);
-        let (inverse2, shrink) = (b.square(inverse), b.mul(x.sd, inverse));
-        let inverse3 = b.mul(inverse2, inverse);
-        let (first, second) = (read(b, Moment::Slope), read(b, Moment::Curvature));
-        let third = read(b, Moment::Third);
-        let root = read(b, Moment::Distortion);
-        let root = b.mul(root, shrink);
+        let inverse = 1.0 / x.sd.max(FINEST as f32 * width);
         Moments {
-            mean,
-            slope: b.mul(first, inverse),
-            curvature: b.mul(second, inverse2),
-            third: b.mul(third, inverse3),
-            distortion: b.square(root),
+            mean: place.below.select(near, mean),
+            slope: read(Moment::Slope) * inverse,
+            curvature: read(Moment::Curvature) * inverse.square(),
+            third: read(Moment::Third) * (inverse.square() * inverse),
+            distortion: (read(Moment::Distortion) * (x.sd * inverse)).square(),
         }
     }
 
-    fn range(&self, _: &Builder, _: [f32; 2]) -> [f32; 2] {
+    fn range(&self, _: [f32; 2]) -> [f32; 2] {
         self.range
     }
 }

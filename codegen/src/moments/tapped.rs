@@ -14,7 +14,7 @@
 //! The last two are Stein's identity for ξ.
 
 use super::{Gaussian, Moments, Transfer};
-use crate::ir::{Builder, FunctionRef, Module, Type, Value};
+use crate::ir::{Builder, Float, FunctionRef, Module, Scalar};
 
 /// How many places there may be on each side of the middle: the fewest that a region needs.
 pub(crate) const SIDES: [usize; 3] = [3, 7, 15];
@@ -38,11 +38,8 @@ impl Rule {
     /// Two thirds of a step are one τ, and the outermost places 2.8 standard deviations of their
     /// weights away.
     fn new(side: usize) -> Self {
-        let step = 2.4 / side as f64
-            * [1.05, 1.33, 1.45][SIDES
-                .iter()
-                .position(|&s| s == side)
-                .expect("one of the rules")];
+        let rule = SIDES.iter().position(|&s| s == side);
+        let step = 2.4 / side as f64 * [1.05, 1.33, 1.45][rule.expect("one of the rules")];
         let spread = (1.0 - (2.0 / 3.0 * step).powi(2)).sqrt();
         let exponent = -0.5 * (step / spread).powi(2);
         let weight = |k: usize| (exponent * (k * k) as f64).exp();
@@ -61,19 +58,19 @@ impl Rule {
 
 /// A function and its moments as functions of a module, and the parameters of both.
 #[derive(Clone, Debug)]
-pub(crate) struct Tapped {
+pub(crate) struct Tapped<'b> {
     /// Gives the components at a value and for the parameters.
     pub(crate) value: FunctionRef,
     /// Made by [`Self::function`].
     pub(crate) moments: FunctionRef,
     /// Which one this is.
     pub(crate) component: usize,
-    pub(crate) parameters: Vec<Value>,
+    pub(crate) parameters: Vec<Scalar<'b>>,
     /// The least and largest value.
     pub(crate) range: [f32; 2],
 }
 
-impl Tapped {
+impl Tapped<'_> {
     /// The moments of one component: mean, slope, curvature, third, distortion.
     pub(crate) const MOMENTS: usize = 5;
 
@@ -85,47 +82,38 @@ impl Tapped {
         name: &str,
         part: &FunctionRef,
         (components, side): (usize, usize),
-        parameters: impl Fn(&mut Builder) -> Vec<Value>,
+        parameters: impl for<'c> Fn(&'c Builder) -> Vec<Scalar<'c>>,
     ) -> FunctionRef {
         let rule = Rule::new(side);
         let turn = turn(module, name, part, (components, side), &parameters);
-        let mut b = Builder::new(
+        let b = &Builder::new(
             format!("{name}_moments"),
             "The moments of a function of a Gaussian, from those of its parts.",
         );
-        let (mean, sd) = (b.param_f32("mean"), b.param_f32("sd"));
-        let parameters = parameters(&mut b);
-        let narrow = b.scale(sd, rule.tau as f32);
-        let mut arguments = vec![mean, narrow];
-        arguments.extend(&parameters);
-        let middle = b.call(part, &arguments);
-        let zero = b.f32(0.0);
-        let mut captures = vec![mean, sd, narrow];
-        captures.extend(&middle);
-        captures.extend(&parameters);
-        let count = b.u32(2 * side as u32);
-        let sums = b.fold(&turn, count, &vec![zero; SUMS * components], &captures);
-        let one = b.f32(1.0);
-        let inverse = b.div(one, sd);
-        for i in 0..components {
-            let [first, beta, square, second, third] = std::array::from_fn(|k| sums[SUMS * i + k]);
-            let [centre, slope, rest] = std::array::from_fn(|k| middle[3 * i + k]);
-            let own = b.scale(rest, rule.weight as f32);
-            let square = b.add(square, own);
+        let [mean, sd] = ["mean", "sd"].map(|name| b.float_param(name));
+        let parameters = parameters(b);
+        let narrow = sd * rule.tau as f32;
+        let middle = b.call(part, (mean, narrow, &parameters));
+        let sums = b.fold(
+            &turn,
+            b.uint(2 * side as u32),
+            vec![b.float(0.0); SUMS * components],
+            (mean, sd, narrow, &middle, &parameters),
+        );
+        let by_sd = 1.0 / sd;
+        for (i, (sums, middle)) in sums.chunks(SUMS).zip(middle.chunks(3)).enumerate() {
+            let [first, beta, squares, second, third] = std::array::from_fn(|k| sums[k]);
+            let [centre, slope, rest] = std::array::from_fn(|k| middle[k]);
             // The middle has no r and no a.
-            let line = b.mul(beta, sd);
-            let (explained, shifted) = (b.square(line), b.square(first));
-            let distortion = b.sub(square, explained);
-            let distortion = b.sub(distortion, shifted);
-            let distortion = b.max(distortion, zero);
-            let of_second = b.scale(inverse, (1.0 / rule.variance) as f32);
-            let of_third = b.mul(of_second, inverse);
+            let squares = squares + rest * rule.weight as f32;
+            let distortion = squares - (beta * sd).square() - first.square();
+            let of_second = by_sd * (1.0 / rule.variance) as f32;
             let moments = [
-                ("mean", b.add(centre, first)),
-                ("slope", b.add(slope, beta)),
-                ("curvature", b.mul(second, of_second)),
-                ("third", b.mul(third, of_third)),
-                ("distortion", distortion),
+                ("mean", centre + first),
+                ("slope", slope + beta),
+                ("curvature", second * of_second),
+                ("third", third * (of_second * by_sd)),
+                ("distortion", distortion.max(0.0)),
             ];
             for (of, value) in moments {
                 b.result(format!("{of}_{i}"), value);
@@ -144,83 +132,57 @@ fn turn(
     name: &str,
     part: &FunctionRef,
     (components, side): (usize, usize),
-    parameters: &impl Fn(&mut Builder) -> Vec<Value>,
+    parameters: &impl for<'c> Fn(&'c Builder) -> Vec<Scalar<'c>>,
 ) -> FunctionRef {
     let rule = Rule::new(side);
-    let mut b = Builder::new(format!("{name}_turn"), "One more part of a Gaussian.");
-    let index = b.param("index", Type::U32);
-    let sums: Vec<Value> = (0..SUMS * components)
-        .map(|i| b.param_f32(format!("sum_{i}")))
-        .collect();
-    let [mean, sd, narrow] = ["mean", "sd", "narrow"].map(|name| b.param_f32(name));
-    let middle: Vec<Value> = (0..3 * components)
-        .map(|i| b.param_f32(format!("middle_{i}")))
-        .collect();
-    let parameters = parameters(&mut b);
+    let b = &Builder::new(format!("{name}_turn"), "One more part of a Gaussian.");
+    let numbers = |name: &str, count: usize| -> Vec<Float<'_>> {
+        (0..count)
+            .map(|i| b.float_param(format!("{name}_{i}")))
+            .collect()
+    };
+    let index = b.uint_param("index");
+    let sums = numbers("sum", SUMS * components);
+    let [mean, sd, narrow] = ["mean", "sd", "narrow"].map(|name| b.float_param(name));
+    let middle = numbers("middle", 3 * components);
+    let parameters = parameters(b);
+
     // The middle is left out: … −2, −1, 1, 2 …
-    let place = b.float_u(index);
-    let place = b.offset(place, -(side as f32));
-    let zero = b.f32(0.0);
-    let negative = b.lt(place, zero);
-    let next = b.offset(place, 1.0);
-    let place = b.select(negative, place, next);
-    let square = b.square(place);
-    let exponent = b.scale(square, rule.exponent as f32);
-    let weight = b.exp(exponent);
-    let weight = b.scale(weight, rule.weight as f32);
-    let xi = b.scale(place, rule.step as f32);
-    let away = b.mul(sd, xi);
-    let at = b.add(mean, away);
-    let mut arguments = vec![at, narrow];
-    arguments.extend(&parameters);
-    let found = b.call(part, &arguments);
-    let one = b.f32(1.0);
-    let inverse = b.div(one, sd);
-    let by_place = b.mul(xi, inverse);
-    let hermite = b.square(xi);
-    let hermite = b.scale(hermite, (1.0 / rule.variance) as f32);
-    let hermite = b.offset(hermite, -1.0);
+    let place = index.to_float() + -(side as f32);
+    let place = place.lt(0.0).select(place, place + 1.0);
+    let weight = (place.square() * rule.exponent as f32).exp() * rule.weight as f32;
+    let xi = place * rule.step as f32;
+    let away = sd * xi;
+    let found = b.call(part, (mean + away, narrow, &parameters));
+    let by_place = xi * (1.0 / sd);
+    let hermite = xi.square() * (1.0 / rule.variance) as f32 + -1.0;
     for i in 0..components {
         let [centre, slope, _] = std::array::from_fn(|k| middle[3 * i + k]);
         let [level, steep, rest] = std::array::from_fn(|k| found[3 * i + k]);
-        let line = b.mul(slope, away);
-        let beyond = b.sub(level, centre);
-        let beyond = b.sub(beyond, line);
-        let turned = b.sub(steep, slope);
-        let (own, between) = (
-            b.scale(turned, (rule.tau * rule.tau) as f32),
-            b.mul(beyond, by_place),
-        );
-        let beta = b.add(own, between);
-        let (spread, squared) = (b.mul(turned, narrow), b.square(beyond));
-        let spread = b.square(spread);
-        let total = b.add(rest, squared);
-        let total = b.add(total, spread);
-        let of_place = b.mul(turned, xi);
-        let of_hermite = b.mul(turned, hermite);
-        for (k, term) in [beyond, beta, total, of_place, of_hermite]
-            .into_iter()
-            .enumerate()
-        {
-            let part = b.mul(term, weight);
-            let sum = b.add(sums[SUMS * i + k], part);
-            b.result(format!("sum_{}", SUMS * i + k), sum);
+        // r and a.
+        let beyond = level - centre - slope * away;
+        let turned = steep - slope;
+        let terms = [
+            beyond,
+            turned * (rule.tau * rule.tau) as f32 + beyond * by_place,
+            rest + beyond.square() + (turned * narrow).square(),
+            turned * xi,
+            turned * hermite,
+        ];
+        for (k, term) in (SUMS * i..).zip(terms) {
+            b.result(format!("sum_{k}"), sums[k] + term * weight);
         }
     }
     b.finish(module)
 }
 
-impl Transfer for Tapped {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let mut arguments = vec![x];
-        arguments.extend(&self.parameters);
-        b.call(&self.value, &arguments)[self.component]
+impl<'b> Transfer<'b> for Tapped<'b> {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        x.builder().call(&self.value, (x, &self.parameters))[self.component]
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let mut arguments = vec![x.mean, x.sd];
-        arguments.extend(&self.parameters);
-        let all = b.call(&self.moments, &arguments);
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let all = (x.mean.builder()).call(&self.moments, (x.mean, x.sd, &self.parameters));
         let [mean, slope, curvature, third, distortion] =
             std::array::from_fn(|k| all[Self::MOMENTS * self.component + k]);
         Moments {
@@ -232,7 +194,7 @@ impl Transfer for Tapped {
         }
     }
 
-    fn range(&self, _: &Builder, _: [f32; 2]) -> [f32; 2] {
+    fn range(&self, _: [f32; 2]) -> [f32; 2] {
         self.range
     }
 }

@@ -9,48 +9,38 @@ mod piecewise;
 mod waves;
 
 use super::{
-    Algebra, Gaussian, Knot, Mode, Piecewise, Polynomial, RealPower, Reciprocal, Shape, Sine,
-    SquareWave, Transfer, spread,
+    Gaussian, Knot, Piecewise, Polynomial, RealPower, Reciprocal, Shape, Sine, SquareWave,
+    Transfer, spread,
 };
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::float::Float;
-use crate::ir::{Builder, Module, Value};
+use crate::ir::{Builder, Module};
 
 /// A function whose moments are [mean, slope, curvature, third, distortion] of (m, v).
-type Make<'a> = &'a dyn Fn(&mut Builder) -> Box<dyn Transfer>;
+type Make<'a> = &'a dyn for<'b> Fn(&'b Builder) -> Box<dyn Transfer<'b> + 'b>;
 
 const UNBOUNDED: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
 
 fn module(make: Make<'_>, range: [f32; 2]) -> Module {
-    let mut b = Builder::new("moments", "The moments of a transfer.");
-    let (mean, variance) = (b.param_f32("m"), b.param_f32("v"));
-    let mut algebra = Algebra::new(b, Mode::Quad);
-    let (sd, inverse_sd) = spread(&mut algebra.b, variance);
-    let b = &mut algebra.b;
+    let b = &Builder::new("moments", "The moments of a transfer.");
+    let (mean, variance) = (b.float_param("m"), b.float_param("v"));
+    let (sd, inverse_sd) = spread(variance);
     let transfer = make(b);
-    let moments = transfer.moments(
-        b,
-        &Gaussian {
-            mean,
-            variance,
-            sd,
-            inverse_sd,
-            range,
-        },
-    );
-    let value = transfer.value(b, mean);
-    for (name, value) in [
-        ("mean", moments.mean),
-        ("slope", moments.slope),
-        ("curvature", moments.curvature),
-        ("third", moments.third),
-        ("distortion", moments.distortion),
-        ("value", value),
-    ] {
-        b.result(name, value);
-    }
+    let moments = transfer.moments(&Gaussian {
+        mean,
+        variance,
+        sd,
+        inverse_sd,
+        range,
+    });
+    b.result("mean", moments.mean);
+    b.result("slope", moments.slope);
+    b.result("curvature", moments.curvature);
+    b.result("third", moments.third);
+    b.result("distortion", moments.distortion);
+    b.result("value", transfer.value(mean));
     let mut module = Module::default();
-    algebra.b.finish(&mut module);
+    b.finish(&mut module);
     module
 }
 
@@ -237,19 +227,10 @@ fn unit(_: f64, _: f64) -> f64 {
 
 #[test]
 fn steps_hinges_and_clamps() {
-    let step = |b: &mut Builder| -> Box<dyn Transfer> {
-        let at = b.f32(0.25);
-        Box::new(Piecewise::step(b, at))
-    };
-    let absolute = |b: &mut Builder| -> Box<dyn Transfer> { Box::new(Piecewise::absolute(b)) };
-    let clamp = |b: &mut Builder| -> Box<dyn Transfer> {
-        let (low, high) = (b.f32(-0.5), b.f32(0.75));
-        Box::new(Piecewise::clamp(b, low, high))
-    };
-    let narrow = |b: &mut Builder| -> Box<dyn Transfer> {
-        let (low, high) = (b.f32(0.25), b.f32(0.26));
-        Box::new(Piecewise::clamp(b, low, high))
-    };
+    let step: Make<'_> = &|b| Box::new(Piecewise::step(b.float(0.25)));
+    let absolute: Make<'_> = &|b| Box::new(Piecewise::absolute(b));
+    let clamp: Make<'_> = &|b| Box::new(Piecewise::clamp(b.float(-0.5), b.float(0.75)));
+    let narrow: Make<'_> = &|b| Box::new(Piecewise::clamp(b.float(0.25), b.float(0.26)));
     let points = grid(-2.0, 3.0, &DEVIATIONS);
     let case = |name, make, exact, breaks: &[f64], tolerances, size| {
         let (breaks, points) = (breaks.to_vec(), points.clone());
@@ -268,7 +249,7 @@ fn steps_hinges_and_clamps() {
     let exact = |x: f64| f64::from(u8::from(x >= 0.25));
     case(
         "step",
-        &step,
+        step,
         &exact,
         &[0.25],
         [1e-6, 1e-6, 2e-6, 4e-6, 1e-4],
@@ -277,7 +258,7 @@ fn steps_hinges_and_clamps() {
     let size = |m: f64, sd: f64| m.abs().max(sd);
     case(
         "absolute",
-        &absolute,
+        absolute,
         &f64::abs,
         &[0.0],
         [2e-6, 2e-6, 2e-6, 2e-6, 1e-3],
@@ -286,7 +267,7 @@ fn steps_hinges_and_clamps() {
     let exact = |x: f64| x.clamp(-0.5, 0.75);
     case(
         "clamp",
-        &clamp,
+        clamp,
         &exact,
         &[-0.5, 0.75],
         [1e-5, 1e-5, 1e-5, 1e-5, 1e-4],
@@ -297,7 +278,7 @@ fn steps_hinges_and_clamps() {
     let tolerances = [5e-4, 5e-4, 5e-4, 5e-4, 5e-3];
     case(
         "narrow clamp",
-        &narrow,
+        narrow,
         &exact,
         &[0.25, 0.26],
         tolerances,
@@ -306,9 +287,11 @@ fn steps_hinges_and_clamps() {
 }
 
 /// A ramp through constants, and its values in f64.
-fn ramp(b: &mut Builder, stops: &[(f32, f32)], shape: Shape) -> Box<dyn Transfer> {
-    let stops: Vec<(Value, Value)> = stops.iter().map(|&(at, y)| (b.f32(at), b.f32(y))).collect();
-    Box::new(Piecewise::ramp(b, &stops, shape))
+fn ramp<'b>(b: &'b Builder, stops: &[(f32, f32)], shape: Shape) -> Box<dyn Transfer<'b> + 'b> {
+    let stops: Vec<_> = (stops.iter())
+        .map(|&(at, y)| (b.float(at), b.float(y)))
+        .collect();
+    Box::new(Piecewise::ramp(&stops, shape))
 }
 
 fn ramp_at(stops: &[(f32, f32)], shape: Shape, x: f64) -> f64 {
@@ -340,11 +323,11 @@ fn ramps_of_every_shape() {
         (&single[..], "single"),
     ] {
         for shape in [Shape::Constant, Shape::Linear, Shape::Smooth] {
-            let make = |b: &mut Builder| ramp(b, stops, shape);
+            let make: Make<'_> = &|b| ramp(b, stops, shape);
             let exact = |x: f64| ramp_at(stops, shape, x);
             Case {
                 name: &format!("{kind} {shape:?}"),
-                make: &make,
+                make,
                 exact: &exact,
                 breaks: stops.iter().map(|s| f64::from(s.0)).collect(),
                 points: grid(-2.0, 3.0, &DEVIATIONS),
@@ -359,10 +342,9 @@ fn ramps_of_every_shape() {
 
 #[test]
 fn sines_and_square_waves() {
-    let sine = |_: &mut Builder| -> Box<dyn Transfer> { Box::new(Sine { phase: 0.0 }) };
     Case {
         name: "sine",
-        make: &sine,
+        make: &|_| Box::new(Sine { phase: 0.0 }),
         exact: &f64::sin,
         breaks: Vec::new(),
         points: grid(-4.0, 4.0, &DEVIATIONS[..13]),
@@ -372,15 +354,16 @@ fn sines_and_square_waves() {
     }
     .check();
     for width in [0.0f32, 0.05, 0.3, 0.5, 0.95, 1.0] {
-        let make = |b: &mut Builder| -> Box<dyn Transfer> {
-            let width = b.f32(width);
-            Box::new(SquareWave { width })
+        let make: Make<'_> = &|b| {
+            Box::new(SquareWave {
+                width: b.float(width),
+            })
         };
         let exact = |x: f64| f64::from(u8::from(x - x.floor() < f64::from(width)));
         let breaks = (-60..=60).flat_map(|i| [f64::from(i), f64::from(i) + f64::from(width)]);
         Case {
             name: &format!("square wave {width}"),
-            make: &make,
+            make,
             exact: &exact,
             breaks: breaks.collect(),
             points: grid(-1.03, 1.51, &DEVIATIONS[..13]),
@@ -396,11 +379,11 @@ fn sines_and_square_waves() {
 fn powers_and_the_reciprocal() {
     let size = |power: f64| move |m: f64, sd: f64| (m.abs() + sd + 0.01).powf(power);
     for power in 0..=Polynomial::MOST {
-        let make = |_: &mut Builder| -> Box<dyn Transfer> { Box::new(Polynomial { power }) };
+        let make: Make<'_> = &|_| Box::new(Polynomial { power });
         let exact = |x: f64| x.powi(power as i32);
         Case {
             name: &format!("polynomial {power}"),
-            make: &make,
+            make,
             exact: &exact,
             breaks: Vec::new(),
             points: grid(-2.0, 2.0, &DEVIATIONS[..12]),
@@ -411,14 +394,15 @@ fn powers_and_the_reciprocal() {
         .check();
     }
     for power in [0.5f32, 1.5, 2.2, 3.5] {
-        let make = |b: &mut Builder| -> Box<dyn Transfer> {
-            let power = b.f32(power);
-            Box::new(RealPower { power })
+        let make: Make<'_> = &|b| {
+            Box::new(RealPower {
+                power: b.float(power),
+            })
         };
         let exact = |x: f64| x.max(0.0).powf(power.into());
         Case {
             name: &format!("real power {power}"),
-            make: &make,
+            make,
             exact: &exact,
             breaks: vec![0.0],
             points: grid(-2.0, 2.0, &DEVIATIONS[..12]),
@@ -428,13 +412,13 @@ fn powers_and_the_reciprocal() {
         }
         .check();
     }
-    let make = |_: &mut Builder| -> Box<dyn Transfer> { Box::new(Reciprocal) };
+    let make: Make<'_> = &|_| Box::new(Reciprocal);
     let exact = |x: f64| 1.0 / x;
     let mut points = grid(0.5, 4.0, &[0.001, 0.01, 0.03, 0.08]);
     points.extend(grid(-4.0, -0.5, &[0.01, 0.08]));
     Case {
         name: "reciprocal",
-        make: &make,
+        make,
         exact: &exact,
         breaks: Vec::new(),
         points,
@@ -474,8 +458,9 @@ fn a_spread_of_nothing_gives_the_value() {
         ("polynomial", &|_| Box::new(Polynomial { power: 5 })),
         ("reciprocal", &|_| Box::new(Reciprocal)),
         ("square wave", &|b| {
-            let width = b.f32(0.37);
-            Box::new(SquareWave { width })
+            Box::new(SquareWave {
+                width: b.float(0.37),
+            })
         }),
     ];
     let points: Vec<(f32, f32)> = (0..41).map(|i| (-1.013 + 0.05 * i as f32, 0.0)).collect();
@@ -500,26 +485,16 @@ fn a_spread_of_nothing_gives_the_value() {
 #[test]
 fn knots_beyond_the_inputs_range_do_not_matter() {
     let make: Make<'_> = &|b| {
-        let (zero, one, minus) = (b.f32(0.0), b.f32(1.0), b.f32(-1.0));
-        let far = b.f32(-30.0);
+        let zero = b.float(0.0);
         let knots = vec![
-            Knot {
-                at: far,
-                jump: zero,
-                bend: one,
-            },
+            Knot::bend(b.float(-30.0), 1.0),
             Knot {
                 at: zero,
-                jump: one,
-                bend: minus,
+                jump: b.float(1.0),
+                bend: b.float(-1.0),
             },
         ];
-        Box::new(Piecewise {
-            offset: zero,
-            slope: zero,
-            knots,
-            bumps: Vec::new(),
-        })
+        Box::new(Piecewise::straight(zero, 0.0, knots))
     };
     let points = grid(-1.0, 1.0, &[0.01, 0.1, 0.3]);
     let bounded = evaluate::<f64>(&module(make, [-5.0, 5.0]), &points);

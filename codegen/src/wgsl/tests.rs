@@ -1,7 +1,7 @@
 //! Tests of the emitted text.
 
 use super::{Entry, Options, emit};
-use crate::ir::{Builder, FOOTPRINT, Interface, Module, Port, Program, Type, Value};
+use crate::ir::{Builder, FOOTPRINT, Float, Int, Interface, Module, Port, Program};
 use crate::target::validate;
 use mipless_graph::Type as GraphType;
 use proptest::prelude::*;
@@ -24,67 +24,67 @@ fn interface(name: &str, parameters: Vec<Port>, outputs: Vec<Port>) -> Interface
     }
 }
 
-/// A builder of an entry with the footprint's parameters.
-fn entry(name: &str) -> (Builder, Vec<Value>) {
-    let mut b = Builder::new(name, "The whole texture.");
-    let footprint = FOOTPRINT
-        .iter()
-        .map(|&(name, ty)| b.param(name, ty))
-        .collect();
-    (b, footprint)
+/// A builder of an entry.
+fn entry(name: &str) -> Builder {
+    Builder::new(name, "The whole texture.")
+}
+
+/// The footprint's parameters: the cell, and the numbers after it.
+fn footprint(b: &Builder) -> ([Int<'_>; 2], [Float<'_>; 6]) {
+    let [x, y, numbers @ ..] = FOOTPRINT.map(|(name, ty)| b.scalar_param(name, ty));
+    ([x.int(), y.int()], numbers.map(|number| number.float()))
+}
+
+/// A program of the entry and what it calls, with these outputs and no parameters.
+fn program(b: &Builder, mut module: Module, name: &str, outputs: Vec<Port>) -> Program {
+    b.finish(&mut module);
+    Program {
+        module,
+        interface: interface(name, Vec::new(), outputs),
+    }
 }
 
 /// A texture with a helper, a loop, an `if` and a parameter.
 fn marble() -> Program {
     let mut module = Module::default();
-    let mut b = Builder::new("octave", "One octave of something.");
-    let index = b.param("index", Type::U32);
-    let (mean, slope) = (b.param_f32("mean"), b.param_f32("slope"));
-    let x = b.param_f32("x");
-    let turn = b.float_u(index);
-    let phase = b.mul(turn, x);
-    let wave = b.sin(phase);
-    let mean = b.add(mean, wave);
-    let slope = b.mul(slope, wave);
-    b.result("mean", mean);
-    b.result("slope", slope);
+    let b = &Builder::new("octave", "One octave of something.");
+    let index = b.uint_param("index");
+    let [mean, slope, x] = ["mean", "slope", "x"].map(|name| b.float_param(name));
+    let wave = (index.to_float() * x).sin();
+    b.result("mean", mean + wave);
+    b.result("slope", slope * wave);
     let octave = b.finish(&mut module);
 
-    let mut b = Builder::new("fine", "A detail.");
-    b.param("index", Type::U32);
-    let state = b.param_f32("state");
-    let next = b.scale(state, 0.5);
-    b.result("state", next);
+    let b = &Builder::new("fine", "A detail.");
+    b.uint_param("index");
+    b.result("state", b.float_param("state") * 0.5);
     let fine = b.finish(&mut module);
 
-    let (mut b, footprint) = entry("marble");
-    let scale = b.param_f32("scale");
-    let x = b.mul(footprint[2], scale);
-    let (count, zero, one) = (b.u32(5), b.f32(0.0), b.f32(1.0));
-    let swirl = b.fold(&octave, count, &[zero, one], &[x]);
-    b.name(swirl[0], "swirl_mean");
-    b.name(swirl[1], "swirl_slope");
-    let far = b.lt(footprint[4], scale);
-    let (once, never) = (b.u32(1), b.u32(0));
-    let times = b.select(far, once, never);
-    let detail = b.fold(&fine, times, &[swirl[0]], &[]);
-    let sum = b.sub(swirl[1], x);
-    let sum = b.sub(detail[0], sum);
-    b.name(sum, "veins");
-    let half = b.scale(sum, 0.5);
-    b.result("r", sum);
-    b.result("g", half);
-    b.result("b", one);
-    b.finish(&mut module);
+    let b = &entry("marble");
+    let (_, [u, _, du, ..]) = footprint(b);
+    let scale = b.float_param("scale");
+    let x = u * scale;
+    let [mean, slope] = b.fold(&octave, b.uint(5), [0.0, 1.0].map(|x| b.float(x)), x);
+    b.name(mean, "swirl_mean");
+    b.name(slope, "swirl_slope");
+    let times = du.lt(scale).select(1u32, 0u32);
+    let veins = b.fold(&fine, times, mean, ()) - (slope - x);
+    b.name(veins, "veins");
+    b.result("r", veins);
+    b.result("g", veins * 0.5);
+    b.result("b", b.float(1.0));
     let parameters = vec![Port {
         default: vec![6.0],
         ..port("scale", GraphType::Float)
     }];
-    let outputs = vec![port("base_color", GraphType::Color3)];
-    Program {
+    let mut program = program(
+        b,
         module,
-        interface: interface("marble", parameters, outputs),
-    }
+        "marble",
+        vec![port("base_color", GraphType::Color3)],
+    );
+    program.interface.parameters = parameters;
+    program
 }
 
 fn assert_valid(source: &str) {
@@ -155,21 +155,18 @@ fn marble(footprint: Footprint, parameters: MarbleParameters) -> MarbleOutputs {
 
 #[test]
 fn parameters_have_the_uniform_layout_and_outputs_may_be_of_any_type() {
-    let (mut b, footprint) = entry("kinds");
-    let on = b.param("on", Type::Bool);
-    let tint = ["r", "g", "b"].map(|n| b.param_f32(n));
-    let steps = b.param("steps", Type::I32);
-    let warp = ["x", "y"].map(|n| b.param_f32(n));
-    let least = b.i32(i32::MIN);
-    let steps = b.max_i(steps, least);
-    let red = b.select(on, tint[0], warp[1]);
-    b.result("steps", steps);
+    let b = &entry("kinds");
+    let (_, [_, v, ..]) = footprint(b);
+    let on = b.param::<bool>("on");
+    let tint = ["r", "g", "b"].map(|name| b.float_param(name));
+    let steps = b.int_param("steps");
+    let [_, y] = ["x", "y"].map(|name| b.float_param(name));
+    b.result("steps", steps.max(i32::MIN));
     b.result("on", on);
-    for value in [red, tint[1], tint[2], footprint[3]] {
+    for value in [on.select(tint[0], y), tint[1], tint[2], v] {
         b.result("tint", value);
     }
-    let zero = b.f32(0.0);
-    (0..6).for_each(|_| b.result("variance", zero));
+    (0..6).for_each(|_| b.result("variance", b.float(0.0)));
     let mut module = Module::default();
     b.finish(&mut module);
     let parameters = vec![
@@ -221,20 +218,17 @@ fn tables_become_one_buffer_and_loads_stay_inside() {
     let mut module = Module::default();
     let first = module.table("first", vec![1.0, 2.0]);
     let second = module.table("second", vec![3.0, 4.0, 5.0]);
-    let (mut b, footprint) = entry("ramp");
-    let (cell, far) = (b.cast_u(footprint[0]), b.u32(9));
-    let loads = [
-        b.load(first, cell),
-        b.load(second, cell),
-        b.load(second, far),
+    let b = &entry("ramp");
+    let ([cell, _], _) = footprint(b);
+    let places = [
+        (first, cell.to_uint()),
+        (second, cell.to_uint()),
+        (second, b.uint(9)),
     ];
-    loads.iter().for_each(|&v| b.result("value", v));
-    b.finish(&mut module);
-    let outputs = vec![port("value", GraphType::Vector3)];
-    let program = Program {
-        module,
-        interface: interface("ramp", Vec::new(), outputs),
-    };
+    for (table, index) in places {
+        b.result("value", b.load(table, index));
+    }
+    let program = program(b, module, "ramp", vec![port("value", GraphType::Vector3)]);
     let shader = emit(
         &program,
         &Options {
@@ -255,8 +249,9 @@ fn tables_become_one_buffer_and_loads_stay_inside() {
 
 #[test]
 fn hostile_names_are_made_safe_and_unique() {
-    let (mut b, footprint) = entry("entry");
-    let mut last = footprint[2];
+    let b = &entry("entry");
+    let (_, [u, v, du, ..]) = footprint(b);
+    let mut last = u;
     for name in [
         "let",
         "fn",
@@ -279,18 +274,12 @@ fn hostile_names_are_made_safe_and_unique() {
         "lerp",
         "a__b",
     ] {
-        let y = b.mul(last, footprint[3]);
-        last = b.min(y, footprint[4]);
+        last = (last * v).min(du);
         b.name(last, name);
     }
     b.result("texture", last);
-    let mut module = Module::default();
-    b.finish(&mut module);
     let outputs = vec![port("texture", GraphType::Float)];
-    let program = Program {
-        module,
-        interface: interface("texture", Vec::new(), outputs),
-    };
+    let program = program(b, Module::default(), "texture", outputs);
     for entry in [Entry::Fragment, Entry::Compute] {
         let shader = emit(&program, &Options { entry });
         assert_valid(&shader.source);
@@ -301,14 +290,13 @@ fn hostile_names_are_made_safe_and_unique() {
 /// A pseudo-random function of many instructions over everything that came before.
 fn long_program(instructions: usize, seed: u32, near: u32) -> Program {
     let mut module = Module::default();
-    let mut h = Builder::new("helper", "A helper.");
-    let (x, y) = (h.param_f32("x"), h.param_f32("y"));
-    let (sum, product) = (h.add(x, y), h.mul(x, y));
-    h.result("sum", sum);
-    h.result("product", product);
+    let h = &Builder::new("helper", "A helper.");
+    let [x, y] = ["x", "y"].map(|name| h.float_param(name));
+    h.result("sum", x + y);
+    h.result("product", x * y);
     let helper = h.finish(&mut module);
-    let (mut b, footprint) = entry("long");
-    let mut values = footprint[2..].to_vec();
+    let b = &entry("long");
+    let mut values = footprint(b).1.to_vec();
     let mut state = seed;
     let mut random = |below: u32| {
         state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
@@ -319,26 +307,21 @@ fn long_program(instructions: usize, seed: u32, near: u32) -> Program {
         let mut pick = || values[(count - 1 - random(count.min(near))) as usize];
         let (a, c) = (pick(), pick());
         let value = match random(20) {
-            0..8 => b.add(a, c),
-            8..15 => b.mul(a, c),
-            15..17 => b.sin(a),
-            17..19 => b.sub(a, c),
-            _ => b.call(&helper, &[a, c])[random(2) as usize],
+            0..8 => a + c,
+            8..15 => a * c,
+            15..17 => a.sin(),
+            17..19 => a - c,
+            _ => b.call(&helper, [a, c])[random(2) as usize],
         };
         values.push(value);
     }
     // Everything counts, so nothing is dead.
-    let mut sum = values[0];
-    for &value in &values[values.len() - values.len() / 2..] {
-        sum = b.add(sum, value);
-    }
-    b.result("sum", sum);
-    b.finish(&mut module);
-    let outputs = vec![port("sum", GraphType::Float)];
-    Program {
-        module,
-        interface: interface("long", Vec::new(), outputs),
-    }
+    let late = &values[values.len() - values.len() / 2..];
+    b.result(
+        "sum",
+        late.iter().fold(values[0], |sum, &value| sum + value),
+    );
+    program(b, module, "long", vec![port("sum", GraphType::Float)])
 }
 
 /// The most lines between `fn` and the closing brace.
@@ -375,21 +358,17 @@ fn long_functions_are_split_into_short_ones_that_validate() {
 #[test]
 fn functions_of_many_parameters_take_them_packed() {
     let mut module = Module::default();
-    let mut h = Builder::new("many", "Many parameters.");
-    let params: Vec<_> = (0..300).map(|i| h.param_f32(format!("x_{i}"))).collect();
-    let sum = params.iter().copied().reduce(|a, b| h.add(a, b)).unwrap();
-    h.result("sum", sum);
+    let h = &Builder::new("many", "Many parameters.");
+    h.result(
+        "sum",
+        h.sum((0..300).map(|i| h.float_param(format!("x_{i}")))),
+    );
     let many = h.finish(&mut module);
-    let (mut b, footprint) = entry("caller");
-    let arguments: Vec<_> = (0..300).map(|i| footprint[2 + i % 6]).collect();
-    let sum = b.call(&many, &arguments)[0];
-    b.result("sum", sum);
-    b.finish(&mut module);
-    let outputs = vec![port("sum", GraphType::Float)];
-    let program = Program {
-        module,
-        interface: interface("caller", Vec::new(), outputs),
-    };
+    let b = &entry("caller");
+    let (_, numbers) = footprint(b);
+    let arguments: Vec<Float<'_>> = (0..300).map(|i| numbers[i % 6]).collect();
+    b.result("sum", b.call(&many, arguments)[0]);
+    let program = program(b, module, "caller", vec![port("sum", GraphType::Float)]);
     let shader = emit(&program, &Options::default());
     assert_valid(&shader.source);
     assert!(shader.source.contains("args: CallerManyArgs"));
@@ -397,17 +376,11 @@ fn functions_of_many_parameters_take_them_packed() {
 
 #[test]
 fn constants_that_do_not_evaluate_are_left_to_run_time() {
-    let (mut b, _) = entry("pole");
-    let (one, zero) = (b.f32(1.0), b.f32(0.0));
-    let pole = b.div(one, zero);
-    b.result("pole", pole);
-    let mut module = Module::default();
-    b.finish(&mut module);
+    let b = &entry("pole");
+    footprint(b);
+    b.result("pole", b.float(1.0) / 0.0);
     let outputs = vec![port("pole", GraphType::Float)];
-    let program = Program {
-        module,
-        interface: interface("pole", Vec::new(), outputs),
-    };
+    let program = program(b, Module::default(), "pole", outputs);
     assert_valid(&emit(&program, &Options::default()).source);
 }
 

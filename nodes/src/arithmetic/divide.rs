@@ -1,11 +1,9 @@
 //! Quotient.
 
 use crate::componentwise::{binary, quotient};
+use crate::port::any;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range,
-};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "divide",
@@ -23,33 +21,18 @@ static SPEC: NodeSpec = NodeSpec {
             deviations, the mean is within 2e-5 of its value; nearer to 0 the quotient has no \
             moments and the result is only bounded. Held by `codegen/src/moments/tests.rs` \
             against dense numerical integration in f64.",
-        references: "Marsaglia 2006, *Ratios of Normal Variables*, §2 (no moments without truncation). \
-            Isserlis 1918, *On a formula for the product-moment coefficient of any order of a \
-            normal frequency distribution* (fourth moments from second ones). MaterialX 1.39 \
-            specification, node `divide`.",
+        references: cite!(marsaglia, isserlis; "divide"),
     },
     inputs: &[
-        PortSpec::new("in1", PortType::Any, Default::Float(1.0), "The numerator.")
-            .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "in2",
-            PortType::Any,
-            Default::Float(1.0),
-            "The divisor; 0 is refused.",
-        )
-        .range(Range::soft(0.1, 4.0).nonzero()),
+        any("in1", 1.0, "The numerator.").range(Range::soft(-1.0, 1.0)),
+        any("in2", 1.0, "The divisor; 0 is refused.").range(Range::soft(0.1, 4.0).nonzero()),
     ],
     output: OutputType::Widest,
     class,
-    example: r#"{
-  "version": 1,
-  "name": "divide_example",
-  "nodes": {
+    example: example! { "divide", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
     "divide": { "type": "divide", "inputs": { "in1": { "node": "bands" }, "in2": 4 } }
-  },
-  "outputs": { "out": { "node": "divide" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -64,6 +47,6 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     binary(lower, node, ["in1", "in2"], quotient)
 }

@@ -1,11 +1,9 @@
 //! Linear interpolation.
 
-use crate::componentwise::{binary, mixed};
+use crate::componentwise::binary;
+use crate::port::{any, number};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "mix",
@@ -19,42 +17,19 @@ static SPEC: NodeSpec = NodeSpec {
             jointly Gaussian signals, with the covariance between the mask and what it masks.",
         accuracy: "Exact to rounding where it is linear; as `multiply` otherwise. Held by \
             `nodes/src/tests.rs`.",
-        references: "Isserlis 1918, *On a formula for the product-moment coefficient of any order of a \
-            normal frequency distribution* (fourth moments from second ones). MaterialX 1.39 \
-            specification, node `mix`.",
+        references: cite!(isserlis; "mix"),
     },
     inputs: &[
-        PortSpec::new(
-            "bg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result where the mask is 0.",
-        ),
-        PortSpec::new(
-            "fg",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result where the mask is 1.",
-        ),
-        PortSpec::new(
-            "mix",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The mask.",
-        )
-        .range(Range::soft(0.0, 1.0)),
+        any("bg", 0.0, "The result where the mask is 0."),
+        any("fg", 0.0, "The result where the mask is 1."),
+        number("mix", 0.0, "The mask.").range(Range::soft(0.0, 1.0)),
     ],
     output: OutputType::Widest,
     class,
-    example: r##"{
-  "version": 1,
-  "name": "mix_example",
-  "nodes": {
+    example: example! { "mix", r##"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
     "mix": { "type": "mix", "inputs": { "bg": "#20303c", "fg": "#e8c27a", "mix": { "node": "bands" } } }
-  },
-  "outputs": { "out": { "node": "mix" } }
-}"##,
+"## },
 };
 
 /// The definition.
@@ -69,9 +44,10 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mask = lower.signal(node, "mix");
-    binary(lower, node, ["bg", "fg"], |lower, bg, fg| {
-        mixed(lower, bg, fg, &mask)
+    let ports = ["bg", "fg"];
+    binary(lower, node, ports, |lower, bg, fg| {
+        lower.algebra.mix(bg, fg, &mask)
     })
 }

@@ -1,10 +1,9 @@
 //! Product.
 
 use crate::componentwise::{binary, product};
+use crate::port::any;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "multiply",
@@ -19,43 +18,24 @@ static SPEC: NodeSpec = NodeSpec {
             hypothesis.",
         accuracy: "Exact to rounding for Gaussian inputs. For others the mean is exact wherever the \
             carried covariance is. Held by `nodes/src/tests.rs`.",
-        references: "Isserlis 1918, *On a formula for the product-moment coefficient of any order of a \
-            normal frequency distribution* (fourth moments from second ones). MaterialX 1.39 \
-            specification, node `multiply`.",
+        references: cite!(isserlis; "multiply"),
     },
     inputs: &[
-        PortSpec::new(
-            "in1",
-            PortType::Any,
-            Default::Float(1.0),
-            "The first operand.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "in2",
-            PortType::Any,
-            Default::Float(1.0),
-            "The second operand.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
+        any("in1", 1.0, "The first operand.").range(Range::soft(-1.0, 1.0)),
+        any("in2", 1.0, "The second operand.").range(Range::soft(-1.0, 1.0)),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Product,
-    example: r#"{
-  "version": 1,
-  "name": "multiply_example",
-  "nodes": {
+    example: example! { "multiply", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
     "across": { "type": "stripes", "inputs": { "frequency": 4, "rotate": 90 } },
     "multiply": { "type": "multiply", "inputs": { "in1": { "node": "bands" }, "in2": { "node": "across" } } }
-  },
-  "outputs": { "out": { "node": "multiply" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     binary(lower, node, ["in1", "in2"], product)
 }

@@ -1,10 +1,9 @@
 //! Unit vector.
 
 use crate::arithmetic::vector::unit;
+use crate::port::any;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "normalize",
@@ -20,15 +19,9 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For a vector at least five standard deviations long the mean and the standard \
             deviation are within 1e-3; nearer to 0 within 0.1 and 0.25. Held by \
             `nodes/src/tests/vector.rs` against dense numerical integration in f64.",
-        references: "Stroud 1971, *Approximate Calculation of Multiple Integrals*, U_n 5. MaterialX 1.39 \
-            specification, node `normalize`.",
+        references: cite!(stroud; "normalize"),
     },
-    inputs: &[PortSpec::new(
-        "in",
-        PortType::Any,
-        Default::Float(1.0),
-        "The vector.",
-    )],
+    inputs: &[any("in", 1.0, "The vector.")],
     output: OutputType::Whole,
     class: |inputs| {
         if inputs.varies("in") {
@@ -41,22 +34,17 @@ static SPEC: NodeSpec = NodeSpec {
             Behaviour::Function
         }
     },
-    example: r#"{
-  "version": 1,
-  "name": "normalize_example",
-  "nodes": {
+    example: example! { "normalize", r#"
     "uv": {"type": "texcoord"},
     "turned": {"type": "rotate2d", "inputs": {"in": {"node": "uv"}, "amount": 30}},
     "normalize": {"type": "normalize", "inputs": {"in": {"node": "turned"}}}
-  },
-  "outputs": { "out": { "node": "normalize" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let components = lower.bundle(node, "in");
     let ranges = vec![[-1.0, 1.0]; components.len()];
     lower.algebra.cubature(&components, &ranges, unit)

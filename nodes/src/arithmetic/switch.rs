@@ -1,10 +1,9 @@
 //! Choice by number.
 
+use crate::port::{any, number};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "switch",
@@ -20,119 +19,48 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For jointly Gaussian inputs the mean and the standard deviation are those of the \
             function, within 1e-3. Held by `nodes/src/tests/combination.rs` against dense \
             numerical integration in f64.",
-        references: "The truncated normal distribution, in Johnson, Kotz & Balakrishnan 1994, *Continuous \
-            Univariate Distributions*, vol. 1, §13.10. Bussgang 1952, *Crosscorrelation functions \
-            of amplitude-distorted Gaussian signals*; Stein 1981, *Estimation of the mean of a \
-            multivariate normal distribution*, lemma 1. MaterialX 1.39 specification, node \
-            `switch`.",
+        references: cite!(truncated, bussgang; "switch"),
     },
     inputs: &[
-        PortSpec::new(
-            "in1",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 0.",
-        ),
-        PortSpec::new(
-            "in2",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 1.",
-        ),
-        PortSpec::new(
-            "in3",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 2.",
-        ),
-        PortSpec::new(
-            "in4",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 3.",
-        ),
-        PortSpec::new(
-            "in5",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 4.",
-        ),
-        PortSpec::new(
-            "in6",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 5.",
-        ),
-        PortSpec::new(
-            "in7",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 6.",
-        ),
-        PortSpec::new(
-            "in8",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 7.",
-        ),
-        PortSpec::new(
-            "in9",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 8.",
-        ),
-        PortSpec::new(
-            "in10",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result for 9.",
-        ),
-        PortSpec::new(
-            "which",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The number that chooses.",
-        )
-        .range(Range::soft(0.0, 9.0)),
+        any("in1", 0.0, "The result for 0."),
+        any("in2", 0.0, "The result for 1."),
+        any("in3", 0.0, "The result for 2."),
+        any("in4", 0.0, "The result for 3."),
+        any("in5", 0.0, "The result for 4."),
+        any("in6", 0.0, "The result for 5."),
+        any("in7", 0.0, "The result for 6."),
+        any("in8", 0.0, "The result for 7."),
+        any("in9", 0.0, "The result for 8."),
+        any("in10", 0.0, "The result for 9."),
+        number("which", 0.0, "The number that chooses.").range(Range::soft(0.0, 9.0)),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "switch_example",
-  "nodes": {
+    example: example! { "switch", r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},
     "which": {"type": "multiply", "inputs": {"in1": {"node": "noise"}, "in2": 3}},
     "switch": {"type": "switch", "inputs": {"which": {"node": "which"}, "in1": {"node": "bands"}, "in2": 0.5, "in3": {"node": "noise"}}}
-  },
-  "outputs": { "out": { "node": "switch" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// The inputs, in order.
-const INPUTS: [&str; 10] = [
-    "in1", "in2", "in3", "in4", "in5", "in6", "in7", "in8", "in9", "in10",
-];
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let which = lower.signal(node, "which");
-    let inputs = INPUTS.map(|port| lower.bundle(node, port));
+    let inputs: Vec<Bundle<'b>> = (SPEC.inputs.iter())
+        .filter(|port| port.name != "which")
+        .map(|port| lower.bundle(node, port.name))
+        .collect();
+    let number = |signal: &Signal<'b>| signal.mean.as_constant().filter(|_| signal.is_certain());
     (0..inputs[0].len())
         .map(|i| {
             // Neighbours that are the same number are one branch: most inputs are not connected.
             let mut thresholds = Vec::new();
             let mut branches = vec![inputs[0][i].clone()];
             for (k, input) in inputs.iter().enumerate().skip(1) {
-                let b = lower.b();
-                let mut number = |signal: &Signal| {
-                    let certain = signal.is_certain(b);
-                    b.as_constant(signal.mean).filter(|_| certain)
-                };
-                let last = branches.last().and_then(&mut number);
+                let last = branches.last().and_then(number);
                 if last.is_none() || last != number(&input[i]) {
                     thresholds.push(k as f32);
                     branches.push(input[i].clone());

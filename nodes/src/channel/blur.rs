@@ -1,5 +1,7 @@
 //! A blurred signal.
 
+use crate::port::{any, number};
+use mipless_codegen::ir::{Sym2, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -26,21 +28,17 @@ static SPEC: NodeSpec = NodeSpec {
             noise. A noise through a step is blurred as well as `quad` filters it: the means of its \
             blurred values are within 0.055 of their filtered ones (root mean square 0.02). The standard \
             deviation is within 0.11 for noises and up to 0.28 too large for patterns. Held by `nodes/src/pattern/tests/upstream.rs` against dense sums.",
-        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (Gaussians \
-            under convolution). Mehler 1866, *Ueber die Entwicklung einer Function von beliebig vielen \
-            Variablen nach Laplaceschen Functionen höherer Ordnung*. MaterialX 1.39 specification, node \
-            `blur`.",
+        references: cite!(
+            "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 \
+             (Gaussians under convolution). Mehler 1866, *Ueber die Entwicklung einer Function \
+             von beliebig vielen Variablen nach Laplaceschen Functionen höherer Ordnung*."; "blur"
+        ),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new(
-            "size",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The width of the box that blurs as much.",
-        )
-        .range(Range::hard(0.0, 1e4).with_soft(0.0, 0.1))
-        .unit("uv"),
+        any("in", 0.0, "The signal."),
+        number("size", 0.0, "The width of the box that blurs as much.")
+            .range(Range::hard(0.0, 1e4).with_soft(0.0, 0.1))
+            .unit("uv"),
         PortSpec::new(
             "texcoord",
             PortType::Exactly(Type::Vector2),
@@ -51,15 +49,10 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Widest,
     class,
-    example: r#"{
-  "version": 1,
-  "name": "blur_example",
-  "nodes": {
+    example: example! { "blur", r#"
     "wall": { "type": "brick", "inputs": { "bond": "basket", "columns": 3, "rows": 6 } },
     "blur": { "type": "blur", "inputs": { "in": { "node": "wall" }, "size": 0.06 } }
-  },
-  "outputs": { "out": { "node": "blur" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -78,57 +71,36 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 /// A footprint of this variance, in uv², blurs nothing that can be seen.
 const LEAST: f32 = 1e-10;
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mode = lower.mode();
-    let size = lower.number(node, "size");
-    let b = lower.b();
-    let variance = b.square(size);
-    let variance = b.scale(variance, 1.0 / 12.0);
-    let variance = b.offset(variance, LEAST);
+    let variance = lower.number(node, "size").square() * (1.0 / 12.0) + LEAST;
     let over = lower.widened(variance);
     let inputs = lower.bundle(node, "in");
     // At a point too: the same closure then gives the same mean at every footprint.
     let blurred = lower.upstream(node, "in", &over, true);
-    let b = lower.b();
-    let [[ux, uy], [vx, vy]] = over.own;
-    let own = b.dot(&[ux, uy, vx, vy], &[ux, uy, vx, vy]);
-    let added = b.scale(variance, 2.0);
-    let total = b.add(own, added);
-    let share = b.div(own, total);
-    let cube = b.square(share);
-    let cube = b.mul(cube, share);
+    let own = (lower.b()).sum(over.own.into_iter().flatten().map(|x| x.square()));
+    let share = own / (own + variance * 2.0);
     // Of one wavelength, order n has the Poisson weight qⁿe^{−q}/n!, q = (2πs/λ)²: Σ ρⁿ of them is
     // e^{−q(1 − ρ)}.
-    let turns = b.square(blurred.wavelengths);
-    let left = b.offset(share, -1.0);
-    let exponent = b.mul(turns, left);
-    let exponent = b.scale(exponent, std::f32::consts::TAU.powi(2));
-    let exponent = b.clamp(exponent, -80.0, 0.0);
-    let damped = b.exp(exponent);
-    let kept = b.min(cube, damped);
+    let exponent = blurred.wavelengths.square() * (share + -1.0) * std::f32::consts::TAU.powi(2);
+    let kept = (share.square() * share).min(exponent.clamp(-80.0, 0.0).exp());
+    // δ′ = L⁻¹A δ.
     let [top, bottom] = over.ratio;
+    let columns = [0, 1].map(|k| Vec2([top[k], bottom[k]]));
     (blurred.components.iter().zip(&inputs))
         .map(|(of, input)| {
-            let b = lower.b();
-            let mut signal = Signal::certain(b, of.mean).with_range(input.range);
+            let mut signal = Signal::certain(of.mean).with_range(input.range);
             if !mode.spreads() {
                 return signal;
             }
-            // δ′ = L⁻¹A δ.
-            let columns = [0, 1].map(|k| [top[k], bottom[k]]);
-            signal.g = columns.map(|column| b.dot(&of.g, &column));
-            let [xx, xy, yy] = of.h;
-            let bent = columns.map(|column| [b.dot(&[xx, xy], &column), b.dot(&[xy, yy], &column)]);
-            let h = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| b.dot(&columns[i], &bent[j]));
-            let mut rest = b.mul(of.rest, kept);
+            signal.g = Vec2(columns.map(|column| of.g.dot(column)));
+            let bent = columns.map(|column| of.h.times(column));
+            let h = Sym2([(0, 0), (0, 1), (1, 1)].map(|(i, j)| columns[i].dot(bent[j])));
+            let mut rest = of.rest * kept;
             if mode == Mode::Quad {
                 signal.h = h;
             } else {
-                let (p, q, r) = (b.square(h[0]), b.square(h[2]), b.square(h[1]));
-                let diagonal = b.add(p, q);
-                let diagonal = b.scale(diagonal, 0.5);
-                let second = b.add(diagonal, r);
-                rest = b.add(rest, second);
+                rest += h.half_contraction(h);
             }
             lower.algebra.bent = true;
             lower.algebra.attach_fresh(&mut signal, rest);

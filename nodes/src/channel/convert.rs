@@ -1,5 +1,6 @@
 //! Conversion between types.
 
+use crate::port::any;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -18,15 +19,10 @@ static SPEC: NodeSpec = NodeSpec {
         statistics: "Exact: each component as it is.",
         accuracy: "Exact. Held by `nodes/src/tests/vector.rs` against dense numerical integration in \
             f64.",
-        references: "MaterialX 1.39 specification, node `convert`.",
+        references: cite!(; "convert"),
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Any,
-            Default::Float(0.0),
-            "What is converted.",
-        ),
+        any("in", 0.0, "What is converted."),
         PortSpec::new(
             "to",
             PortType::Choice(&["color3", "color4", "vector2", "vector3", "vector4"]),
@@ -36,21 +32,16 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Named("to"),
     class: |_| Behaviour::Linear,
-    example: r#"{
-  "version": 1,
-  "name": "convert_example",
-  "nodes": {
+    example: example! { "convert", r#"
     "uv": {"type": "texcoord"},
     "convert": {"type": "convert", "inputs": {"in": {"node": "uv"}, "to": "vector3"}}
-  },
-  "outputs": { "out": { "node": "convert" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mut bundle = lower.bundle(node, "in");
     let scalar = bundle.len() == 1;
     while bundle.len() < node.ty.components() {

@@ -1,6 +1,7 @@
 //! A knot in a wire.
 
 use crate::componentwise::unary;
+use crate::port::any;
 use mipless_codegen::NodeDef;
 use mipless_graph::{
     Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Type,
@@ -15,10 +16,10 @@ static SPEC: NodeSpec = NodeSpec {
         computes: "out = in. For editors, whose wires bend at it; the note is for readers.",
         statistics: "Exact: the signal as it is.",
         accuracy: "Exact; no code is generated for it. Held by `nodes/src/tests/channel.rs`.",
-        references: "MaterialX 1.39 specification, node `dot`.",
+        references: cite!(; "dot"),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
+        any("in", 0.0, "The signal."),
         PortSpec::new(
             "note",
             PortType::Exactly(Type::String),
@@ -28,15 +29,10 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Linear,
-    example: r#"{
-  "version": 1,
-  "name": "dot_example",
-  "nodes": {
+    example: example! { "dot", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
     "dot": { "type": "dot", "inputs": { "in": { "node": "bands" }, "note": "to the mask" } }
-  },
-  "outputs": { "out": { "node": "dot" } }
-}"#,
+"# },
 };
 
 /// The definition.

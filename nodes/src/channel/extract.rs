@@ -1,5 +1,6 @@
 //! One component.
 
+use crate::port::any;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
@@ -15,15 +16,10 @@ static SPEC: NodeSpec = NodeSpec {
             the last one.",
         statistics: "Exact: the component as it is.",
         accuracy: "Exact. Held by `nodes/src/tests.rs`.",
-        references: "MaterialX 1.39 specification, node `extract`.",
+        references: cite!(; "extract"),
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Any,
-            Default::Float(0.0),
-            "The vector or colour.",
-        ),
+        any("in", 0.0, "The vector or colour."),
         PortSpec::new(
             "index",
             PortType::Exactly(Type::Integer),
@@ -35,21 +31,16 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Float),
     class: |_| Behaviour::Linear,
-    example: r#"{
-  "version": 1,
-  "name": "extract_example",
-  "nodes": {
+    example: example! { "extract", r#"
     "uv": { "type": "texcoord" },
     "extract": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 1 } }
-  },
-  "outputs": { "out": { "node": "extract" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mut bundle = lower.bundle(node, "in");
     let index = lower.integer(node, "index").max(0) as usize;
     let last = bundle.len() - 1;

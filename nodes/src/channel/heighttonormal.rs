@@ -1,6 +1,7 @@
 //! A normal from a height.
 
-use mipless_codegen::ir::{Builder, Value};
+use crate::port::number;
+use mipless_codegen::ir::{Float, Sym2, Vec2, dot};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef, Over, Widened};
 use mipless_graph::{
@@ -40,16 +41,10 @@ static SPEC: NodeSpec = NodeSpec {
             specification, node `heighttonormal`; its factor 1/16 is that of its implementation.",
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The height.",
-        ),
-        PortSpec::new(
+        number("in", 0.0, "The height."),
+        number(
             "scale",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "How much the height tilts the normal: 16 for a height in units of the texcoord.",
         )
         .range(Range::soft(0.0, 16.0)),
@@ -63,15 +58,10 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Vector3),
     class,
-    example: r#"{
-  "version": 1,
-  "name": "heighttonormal_example",
-  "nodes": {
+    example: example! { "heighttonormal", r#"
     "hills": { "type": "fractal2d", "inputs": { "frequency": 5 } },
     "heighttonormal": { "type": "heighttonormal", "inputs": { "in": { "node": "hills" }, "scale": 2 } }
-  },
-  "outputs": { "out": { "node": "heighttonormal" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -95,38 +85,29 @@ const RESOLUTION: f32 = 1e-5;
 /// Slopes beyond this are those of jumps, and vertical.
 const STEEPEST: f32 = 1e9;
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let spreads = lower.mode().spreads();
     let scale = lower.number(node, "scale");
-    let variance = lower.b().f32(RESOLUTION * RESOLUTION);
-    let over = lower.widened(variance);
+    let over = lower.widened(lower.b().float(RESOLUTION * RESOLUTION));
     let height = lower.upstream(node, "in", &over, spreads);
     let place = lower.upstream(node, "texcoord", &over, false);
-    let frame = Frame::new(lower.b(), &place.components, scale);
+    let frame = Frame::new(&place.components, scale);
     let of = height.components[0];
-    let mut tilts = frame.tilts(lower.b(), &of);
+    let mut tilts = frame.tilts(&of);
     if spreads {
-        let removed = removed(lower.b(), &over, of.rest, height.wavelengths);
+        let removed = removed(&over, of.rest, height.wavelengths);
         for (i, tilt) in tilts.iter_mut().enumerate() {
-            let b = lower.b();
-            tilt.g = frame.responses(b, i, &of, &over);
-            let unit = frame.share(b, i, &over);
-            let variance = b.mul(unit, removed);
-            lower.algebra.attach_fresh(tilt, variance);
+            tilt.g = frame.responses(i, &of, &over);
+            lower
+                .algebra
+                .attach_fresh(tilt, frame.share(i, &over) * removed);
         }
     }
     let ranges = [[0.0, 1.0], [0.0, 1.0], [0.5, 1.0]];
-    lower.algebra.fine_cubature(&tilts, &ranges, |b, tilt| {
-        let square = b.dot(tilt, tilt);
-        let square = b.offset(square, 1.0);
-        let length = b.sqrt(square);
-        let half = b.f32(0.5);
-        let inverse = b.div(half, length);
-        let sides = [tilt[0], tilt[1]].map(|t| {
-            let side = b.mul(t, inverse);
-            b.offset(side, 0.5)
-        });
-        vec![sides[0], sides[1], b.offset(inverse, 0.5)]
+    lower.algebra.fine_cubature(&tilts, &ranges, |tilt| {
+        let [x, y] = [tilt[0], tilt[1]];
+        let up = 0.5 / (x * x + y * y + 1.0).sqrt();
+        [x * up, y * up, up].map(|side| side + 0.5).to_vec()
     })
 }
 
@@ -134,82 +115,56 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
 /// q²/(q² + ¼), q = (2πs/λ)². For small q R is of the third order and next to nothing, unless a
 /// pattern estimates it by a share of its ramps: what is left of it then is of the first order, and no
 /// detail.
-fn removed(b: &mut Builder, over: &Widened, rest: Value, wavelengths: Value) -> Value {
+fn removed<'b>(over: &Widened<'b>, rest: Float<'b>, wavelengths: Float<'b>) -> Float<'b> {
     let [first, side, second] = over.root;
-    let (xx, yy) = (b.square(first), b.dot(&[side, second], &[side, second]));
-    let xy = b.mul(first, side);
-    let (sum, difference) = (b.add(xx, yy), b.sub(xx, yy));
-    let (half, tilt) = (b.scale(sum, 0.5), b.scale(difference, 0.5));
-    let square = b.dot(&[tilt, xy], &[tilt, xy]);
-    let root = b.sqrt(square);
-    let major = b.add(half, root);
-    let turns = b.square(wavelengths);
-    let turns = b.scale(turns, std::f32::consts::TAU.powi(2));
-    let most = b.f32(1e9);
-    let bounded = b.min(turns, most);
-    let square = b.square(bounded);
-    let more = b.offset(square, 0.25);
-    let share = b.div(square, more);
-    let detail = b.div(turns, major);
-    let detail = b.mul(detail, share);
-    let detail = b.scale(detail, 0.5);
-    b.mul(rest, detail)
+    let covariance = Sym2([
+        first.square(),
+        first * side,
+        dot([side, second], [side, second]),
+    ]);
+    let [major, _] = covariance.eigenvalues();
+    let turns = wavelengths.square() * std::f32::consts::TAU.powi(2);
+    let square = turns.min(1e9).square();
+    rest * (turns / major * (square / (square + 0.25)) * 0.5)
 }
 
 /// −k (JL)⁻ᵀ: what responses to δ′ are as tilts of the normal, for the Jacobian J of the texcoord.
-struct Frame {
-    rows: [[Value; 2]; 2],
+struct Frame<'b> {
+    rows: [Vec2<'b>; 2],
 }
 
-impl Frame {
-    fn new(b: &mut Builder, texcoord: &[Over], scale: Value) -> Self {
-        let [[ux, uy], [vx, vy]] = [texcoord[0].g, texcoord[1].g];
-        let (p, q) = (b.mul(ux, vy), b.mul(vx, uy));
-        let area = b.sub(p, q);
+impl<'b> Frame<'b> {
+    fn new(texcoord: &[Over<'b>], scale: Float<'b>) -> Self {
+        let (u, v) = (texcoord[0].g, texcoord[1].g);
+        let area = u[0] * v[1] - v[0] * u[1];
         // Of less than a millionth of its sides' product nothing but rounding is left.
-        let (of_u, of_v) = (b.dot(&[ux, uy], &[ux, uy]), b.dot(&[vx, vy], &[vx, vy]));
-        let (of_u, of_v) = (b.sqrt(of_u), b.sqrt(of_v));
-        let sides = b.mul(of_u, of_v);
-        let least = b.scale(sides, 1e-6);
-        let magnitude = b.abs(area);
-        let whole = b.lt(least, magnitude);
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        let guarded = b.select(whole, area, one);
-        let factor = b.scale(scale, -1.0 / 16.0);
-        let inverse = b.div(factor, guarded);
-        let inverse = b.select(whole, inverse, zero);
-        let (minus_vx, minus_uy) = (b.neg(vx), b.neg(uy));
-        let rows = [[vy, minus_vx], [minus_uy, ux]].map(|row| row.map(|v| b.mul(v, inverse)));
-        Self { rows }
+        let sides = u.norm2().sqrt() * v.norm2().sqrt();
+        let whole = area.abs().gt(sides * 1e-6);
+        let inverse = scale * (-1.0 / 16.0) / whole.select(area, 1.0);
+        let inverse = whole.select(inverse, 0.0);
+        Self {
+            rows: [Vec2([v[1], -v[0]]) * inverse, Vec2([-u[1], u[0]]) * inverse],
+        }
     }
 
     /// The mean tilts.
-    fn tilts(&self, b: &mut Builder, height: &Over) -> [Signal; 2] {
-        self.rows.map(|row| {
-            let tilt = b.dot(&row, &height.g);
-            let tilt = b.clamp(tilt, -STEEPEST, STEEPEST);
-            Signal::certain(b, tilt)
-        })
+    fn tilts(&self, height: &Over<'b>) -> [Signal<'b>; 2] {
+        self.rows
+            .map(|row| Signal::certain(row.dot(height.g).clamp(-STEEPEST, STEEPEST)))
     }
 
     /// The response of a tilt to the pixel's δ.
-    fn responses(&self, b: &mut Builder, i: usize, height: &Over, over: &Widened) -> [Value; 2] {
-        let [xx, xy, yy] = height.h;
-        let row = self.rows[i];
-        let (left, right) = (b.dot(&row, &[xx, xy]), b.dot(&row, &[xy, yy]));
+    fn responses(&self, i: usize, height: &Over<'b>, over: &Widened<'b>) -> Vec2<'b> {
+        let [left, right] = *height.h.times(self.rows[i]);
         let [top, bottom] = over.ratio;
-        [0, 1].map(|k| {
-            let response = b.dot(&[left, right], &[top[k], bottom[k]]);
-            b.clamp(response, -STEEPEST, STEEPEST)
-        })
+        Vec2([0, 1].map(|k| dot([left, right], [top[k], bottom[k]])))
+            .map(|response| response.clamp(-STEEPEST, STEEPEST))
     }
 
     /// The variance of a tilt where the slopes by u and by v of the surface have variance 1 each.
-    fn share(&self, b: &mut Builder, i: usize, over: &Widened) -> Value {
+    fn share(&self, i: usize, over: &Widened<'b>) -> Float<'b> {
         let [first, side, second] = over.root;
-        let [p, q] = self.rows[i];
-        let x = b.mul(p, first);
-        let y = b.dot(&[p, q], &[side, second]);
-        b.dot(&[x, y], &[x, y])
+        let [p, q] = *self.rows[i];
+        Vec2([p * first, p * side + q * second]).norm2()
     }
 }

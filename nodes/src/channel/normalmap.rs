@@ -1,7 +1,7 @@
 //! The normal that a normal map holds.
 
 use crate::arithmetic::vector::unit;
-use mipless_codegen::ir::Value;
+use crate::port::number;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -31,9 +31,11 @@ static SPEC: NodeSpec = NodeSpec {
             (0.05) of 1.4; the standard deviation is within 0.1, 0.18 and 0.26. Held by \
             `nodes/src/tests/vector.rs` against dense numerical integration in f64, and by \
             `nodes/src/pattern/tests/upstream.rs` against dense sums.",
-        references: "Olano & Baker 2010, *LEAN Mapping* (what the normals of a footprint have in common). \
-            Stroud 1971, *Approximate Calculation of Multiple Integrals*, U_n 5. MaterialX 1.39 \
-            specification, node `normalmap`.",
+        references: cite!(
+            "Olano & Baker 2010, *LEAN Mapping* (what the normals of a footprint have in \
+             common).",
+            stroud; "normalmap"
+        ),
     },
     inputs: &[
         PortSpec::new(
@@ -42,13 +44,8 @@ static SPEC: NodeSpec = NodeSpec {
             Default::Color3([0.5, 0.5, 1.0]),
             "The colour of a normal map, or the same numbers as a vector.",
         ),
-        PortSpec::new(
-            "scale",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "How much the normal leans: 0 for not at all.",
-        )
-        .range(Range::soft(0.0, 2.0)),
+        number("scale", 1.0, "How much the normal leans: 0 for not at all.")
+            .range(Range::soft(0.0, 2.0)),
     ],
     output: OutputType::Exactly(Type::Vector3),
     class: |inputs| {
@@ -62,22 +59,17 @@ static SPEC: NodeSpec = NodeSpec {
             Behaviour::Function
         }
     },
-    example: r#"{
-  "version": 1,
-  "name": "normalmap_example",
-  "nodes": {
+    example: example! { "normalmap", r#"
     "hills": { "type": "fractal2d", "inputs": { "frequency": 5 } },
     "map": { "type": "heighttonormal", "inputs": { "in": { "node": "hills" }, "scale": 0.5 } },
     "normalmap": { "type": "normalmap", "inputs": { "in": { "node": "map" }, "scale": 1.5 } }
-  },
-  "outputs": { "out": { "node": "normalmap" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = lower.bundle(node, "in");
     let scale = lower.signal(node, "scale");
     let mut inputs = match &color[..] {
@@ -87,12 +79,9 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     };
     inputs.push(scale);
     let ranges = [[-1.0, 1.0]; 3];
-    lower.algebra.cubature(&inputs, &ranges, |b, v| {
-        let both: Vec<Value> = v[..3].iter().map(|&x| b.add(x, x)).collect();
-        let mut normal: Vec<Value> = both.iter().map(|&x| b.offset(x, -1.0)).collect();
-        for side in &mut normal[..2] {
-            *side = b.mul(*side, v[3]);
-        }
-        unit(b, &normal)
+    lower.algebra.cubature(&inputs, &ranges, |v| {
+        let scale = v[3];
+        let [x, y, z] = [v[0], v[1], v[2]].map(|x| x + x + -1.0);
+        unit(&[x * scale, y * scale, z])
     })
 }

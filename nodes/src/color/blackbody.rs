@@ -1,11 +1,10 @@
 //! Colour of heat.
 
 use crate::componentwise::{exposed, transfer};
+use crate::port::number;
 use mipless_codegen::moments::{Piecewise, Shape, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "blackbody",
@@ -21,30 +20,21 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "At a point within 0.015 (red), 0.004 (green), 0.03 (blue) of the cubic formulas of \
             Kim et al., whose values reach 3; filtered, within 1e-5 of the piecewise function. \
             Held by `nodes/src/tests/color.rs` against dense numerical integration in f64.",
-        references: "Kim, Kang, Kim & Kwak 2002, US patent 7024034 (cubic splines of the Planckian locus). \
-            ITU-R BT.709-6. Bussgang 1952, *Crosscorrelation functions of amplitude-distorted \
-            Gaussian signals*; Stein 1981, *Estimation of the mean of a multivariate normal \
-            distribution*, lemma 1. MaterialX 1.39 specification, node `blackbody`.",
+        references: cite!(
+            "Kim, Kang, Kim & Kwak 2002, US patent 7024034 (cubic splines of the Planckian \
+             locus). ITU-R BT.709-6.",
+            bussgang; "blackbody"
+        ),
     },
-    inputs: &[PortSpec::new(
-        "temperature",
-        PortType::Exactly(Type::Float),
-        Default::Float(5000.0),
-        "The temperature.",
-    )
-    .unit("kelvin")
-    .range(Range::soft(1667.0, 25000.0))],
+    inputs: &[number("temperature", 5000.0, "The temperature.")
+        .unit("kelvin")
+        .range(Range::soft(1667.0, 25000.0))],
     output: OutputType::Exactly(Type::Color3),
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "blackbody_example",
-  "nodes": {
+    example: example! { "blackbody", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "amplitude": 4000, "pivot": 5000}},
     "blackbody": {"type": "blackbody", "inputs": {"temperature": {"node": "noise"}}}
-  },
-  "outputs": { "out": { "node": "blackbody" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -66,20 +56,17 @@ const STOPS: [(f32, [f32; 3]); 12] = [
     (25_000.0, [0.727_31, 0.987_5, 1.927_4]),
 ];
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let kelvin = exposed(lower, node, "temperature");
     // In units in which slopes are neither large nor small.
-    let unit = lower.b().f32(1e-3);
     let x = Signal {
         hermite: kelvin[0].hermite,
-        ..kelvin[0].scale(lower.b(), unit)
+        ..&kelvin[0] * 1e-3
     };
-    (0..3)
-        .map(|k| {
-            let b = lower.b();
-            let stops = STOPS.map(|(at, color)| (b.f32(at * 1e-3), b.f32(color[k])));
-            let ramp = Piecewise::ramp(b, &stops, Shape::Linear);
-            transfer(lower, &x, &ramp)
-        })
-        .collect()
+    let b = lower.b();
+    let channel = |k: usize| {
+        let stops = STOPS.map(|(at, color)| (b.float(at * 1e-3), b.float(color[k])));
+        transfer(lower, &x, &Piecewise::ramp(&stops, Shape::Linear))
+    };
+    (0..3).map(channel).collect()
 }

@@ -2,17 +2,17 @@
 
 mod shape;
 
-use std::sync::Arc;
-
 use crate::picture::port::{COLORSPACE, FILE, planes};
 use crate::picture::texels::Texels;
-use mipless_codegen::ir::{Builder, Module, Value};
+use crate::port::number;
+use mipless_codegen::ir::{Builder, Float, Module};
 use mipless_codegen::moments::{Domain, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 use shape::Shape;
+use std::sync::Arc;
 
 static SPEC: NodeSpec = NodeSpec {
     name: "colormap2d",
@@ -39,26 +39,16 @@ static SPEC: NodeSpec = NodeSpec {
             map's domain is averaged to that. The manifest states the largest error of \
             each table. Held by `codegen/src/moments/map/tests.rs` against dense numerical \
             integration in f64, for pictures by `nodes/tests/colormap.rs`.",
-        references: "Grenier, Sauvage, Dischler & Thery 2022, *Color-mapped noise vector fields for \
-            generating procedural micro-patterns*, §5 (two independent noises, axis-aligned \
-            Gaussians). Heitz, Nowrouzezahrai, Poulin & Neyret 2013, *Filtering Color Mapped \
-            Textures and Surfaces*, §4.",
+        references: cite!(
+            "Grenier, Sauvage, Dischler & Thery 2022, *Color-mapped noise vector fields for \
+             generating procedural micro-patterns*, §5 (two independent noises, axis-aligned \
+             Gaussians).",
+            color_mapped
+        ),
     },
     inputs: &[
-        PortSpec::new(
-            "in1",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The signal along the map's first axis.",
-        )
-        .range(Range::soft(0.0, 1.0)),
-        PortSpec::new(
-            "in2",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The signal along the map's second axis.",
-        )
-        .range(Range::soft(0.0, 1.0)),
+        number("in1", 0.0, "The signal along the map's first axis.").range(Range::soft(0.0, 1.0)),
+        number("in2", 0.0, "The signal along the map's second axis.").range(Range::soft(0.0, 1.0)),
         FILE,
         PortSpec::new(
             "signature",
@@ -110,12 +100,7 @@ static SPEC: NodeSpec = NodeSpec {
         )
         .uniform()
         .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "rotate",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The direction across the bands, counter-clockwise from the first axis.",
-        )
+        number("rotate", 0.0, "The direction across the bands, counter-clockwise from the first axis.")
         .uniform()
         .range(Range::soft(0.0, 360.0))
         .unit("degrees"),
@@ -146,10 +131,7 @@ static SPEC: NodeSpec = NodeSpec {
         named: "signature",
     },
     class: |_| Behaviour::Function,
-    example: r##"{
-  "version": 1,
-  "name": "colormap2d_example",
-  "nodes": {
+    example: example! { "colormap2d", r##"
     "folds": { "type": "spectralnoise2d", "inputs": { "frequency": 5, "pivot": 0.5 } },
     "grain": { "type": "noise2d", "inputs": { "frequency": 9, "pivot": 0.5, "seed": 3 } },
     "colormap2d": { "type": "colormap2d", "inputs": {
@@ -158,9 +140,7 @@ static SPEC: NodeSpec = NodeSpec {
         "stops": [
           { "at": 0, "value": "#7d6b57" }, { "at": 0.5, "value": "#a89078" }, { "at": 1, "value": "#c9bca6" }
         ] } }
-  },
-  "outputs": { "out": { "node": "colormap2d" } }
-}"##,
+"## },
 };
 
 /// The definition.
@@ -186,7 +166,7 @@ enum Picture {
     Shape(Shape),
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (x, y) = (lower.signal(node, "in1"), lower.signal(node, "in2"));
     let pair = |port: &str| {
         let numbers = node.literal(port).numbers();
@@ -228,7 +208,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
 impl Map {
     /// Where the map is sampled: one period, or what the signals reach of the map and of half a map
     /// around it.
-    fn domain(&self, signals: [&Signal; 2]) -> Domain {
+    fn domain(&self, signals: [&Signal<'_>; 2]) -> Domain {
         let bounds = [0, 1].map(|i| {
             let (low, width) = (self.low[i], self.width[i]);
             let [from, to] = if width < 0.0 {
@@ -268,20 +248,23 @@ impl Map {
     }
 
     /// The channels at a place.
-    fn value(&self, b: &mut Builder, module: &mut Module, place: [Value; 2]) -> Vec<Value> {
+    fn value<'b>(
+        &self,
+        b: &'b Builder,
+        module: &mut Module,
+        place: [Float<'b>; 2],
+    ) -> Vec<Float<'b>> {
         let p = [0, 1].map(|i| {
-            let from = b.offset(place[i], -self.low[i]);
-            let p = b.scale(from, 1.0 / self.width[i]);
+            let p = (place[i] + -self.low[i]) * (1.0 / self.width[i]);
             if self.periodic {
-                let whole = b.floor(p);
-                b.sub(p, whole)
+                p - p.floor()
             } else {
                 // The far edge belongs to the last band.
-                b.clamp(p, 0.0, 1.0 - 1e-6)
+                p.clamp(0.0, 1.0 - 1e-6)
             }
         });
         match &self.picture {
-            Picture::File(texels) => texels.at(b, module, p, self.periodic),
+            Picture::File(texels) => texels.at(module, p, self.periodic),
             Picture::Shape(shape) => shape.at(b, module, p, self.periodic),
         }
     }

@@ -1,12 +1,12 @@
 //! A function of one number by stops.
 
+use crate::componentwise::transfer;
+use crate::port::number;
 use mipless_codegen::moments::{Piecewise, Shape};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
 };
-
-use crate::componentwise::transfer;
 
 static SPEC: NodeSpec = NodeSpec {
     name: "colorramp",
@@ -38,20 +38,16 @@ static SPEC: NodeSpec = NodeSpec {
             values. For a noise, the error is the distance of its distribution from a Gaussian \
             times the largest jump. Held by `codegen/src/moments/tests.rs` against dense \
             numerical integration in f64.",
-        references: "Heitz, Nowrouzezahrai, Poulin & Neyret 2013, *Filtering Color Mapped Textures and \
-            Surfaces*, §4 (the expectation of a colour map). Bussgang 1952, *Crosscorrelation \
-            functions of amplitude-distorted Gaussian signals*; Stein 1981, *Estimation of the \
-            mean of a multivariate normal distribution*, lemma 1. Steffen 1990, *A simple method \
-            for monotonic interpolation in one dimension*, eqs. 8 and 11.",
+        references: cite!(
+            "Heitz, Nowrouzezahrai, Poulin & Neyret 2013, *Filtering Color Mapped Textures and \
+             Surfaces*, §4 (the expectation of a colour map).",
+            bussgang,
+            "Steffen 1990, *A simple method for monotonic interpolation in one dimension*, eqs. \
+             8 and 11."
+        ),
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The signal.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
+        number("in", 0.0, "The signal.").range(Range::soft(-1.0, 1.0)),
         PortSpec::new(
             "stops",
             PortType::Stops,
@@ -67,10 +63,7 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Stops,
     class: |_| Behaviour::Function,
-    example: r##"{
-  "version": 1,
-  "name": "colorramp_example",
-  "nodes": {
+    example: example! { "colorramp", r##"
     "uv": { "type": "texcoord" },
     "u": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 0 } },
     "turns": { "type": "multiply", "inputs": { "in1": { "node": "u" }, "in2": 25 } },
@@ -80,15 +73,13 @@ static SPEC: NodeSpec = NodeSpec {
         "stops": [
           { "at": -1, "value": "#1d2b3a" }, { "at": 0.2, "value": "#c9b28a" }, { "at": 1, "value": "#f4efe4" }
         ] } }
-  },
-  "outputs": { "out": { "node": "colorramp" } }
-}"##,
+"## },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mut x = lower.signal(node, "in");
     let shape = match lower.choice(node, "interpolation") {
         "constant" => Shape::Constant,
@@ -102,15 +93,12 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
         // The channels bend with one another: what each bends is not independent.
         x.hermite = Some(lower.algebra.fresh_symbol());
     }
-    let channel = |lower: &mut Lower<'_>, i: usize| {
-        let b = lower.b();
-        let stops: Vec<_> = stops
-            .stops
-            .iter()
-            .map(|stop| (b.f32(stop.at), b.f32(stop.value[i])))
+    let b = lower.b();
+    let channel = |i: usize| {
+        let stops: Vec<_> = (stops.stops.iter())
+            .map(|stop| (b.float(stop.at), b.float(stop.value[i])))
             .collect();
-        let ramp = Piecewise::ramp(b, &stops, shape);
-        transfer(lower, &x, &ramp)
+        transfer(lower, &x, &Piecewise::ramp(&stops, shape))
     };
-    (0..channels).map(|i| channel(lower, i)).collect()
+    (0..channels).map(channel).collect()
 }

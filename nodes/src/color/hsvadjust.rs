@@ -2,6 +2,7 @@
 
 use crate::color::hsv::adjusted;
 use crate::componentwise::{exposed, numbers};
+use crate::port::exactly;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
@@ -26,17 +27,10 @@ static SPEC: NodeSpec = NodeSpec {
             apart, within 1e-3; where their order changes within the footprint the mean is within \
             0.02 and the standard deviation within 0.02. Held by `nodes/src/tests/color.rs` \
             against dense numerical integration in f64.",
-        references: "Smith 1978, *Color Gamut Transform Pairs* (the hexcone). Stroud 1971, *Approximate \
-            Calculation of Multiple Integrals*, U_n 5. Clark 1961, *The Greatest of a Finite Set \
-            of Random Variables*, eqs. 2–6. MaterialX 1.39 specification, node `hsvadjust`.",
+        references: cite!(hexcone, stroud, clark; "hsvadjust"),
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Exactly(Type::Color3),
-            Default::Float(0.0),
-            "The colour, linear Rec. 709.",
-        ),
+        exactly(Type::Color3, "in", 0.0, "The colour, linear Rec. 709."),
         PortSpec::new(
             "amount",
             PortType::Exactly(Type::Vector3),
@@ -46,23 +40,18 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Color3),
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "hsvadjust_example",
-  "nodes": {
+    example: example! { "hsvadjust", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},
     "other": {"type": "noise2d", "inputs": {"frequency": 4, "pivot": 0.4, "seed": 3}},
     "color": {"type": "combine3", "inputs": {"in1": {"node": "noise"}, "in2": 0.25, "in3": {"node": "other"}}},
     "hsvadjust": {"type": "hsvadjust", "inputs": {"in": {"node": "color"}, "amount": [0.2, 0.8, 1.1]}}
-  },
-  "outputs": { "out": { "node": "hsvadjust" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = exposed(lower, node, "in");
     let amounts = numbers(lower, node, "amount");
     adjusted(lower, &color, [amounts[0], amounts[1], amounts[2]])

@@ -2,11 +2,10 @@
 
 use crate::color::hsv::ABSENCE;
 use crate::componentwise::{composed, exposed, product, transfer};
+use crate::port::exactly;
 use mipless_codegen::moments::{LinearWave, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "hsvtorgb",
@@ -25,53 +24,41 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For jointly Gaussian inputs with spreads up to 0.2 the mean is within 5e-3 and the \
             standard deviation within 0.02. Held by `nodes/src/tests/color.rs` against dense \
             numerical integration in f64.",
-        references: "Smith 1978, *Color Gamut Transform Pairs* (the hexcone). The characteristic function \
-            of the normal distribution, in *Abramowitz & Stegun* 26.2. Isserlis 1918, *On a \
-            formula for the product-moment coefficient of any order of a normal frequency \
-            distribution* (fourth moments from second ones). MaterialX 1.39 specification, node \
-            `hsvtorgb`.",
+        references: cite!(hexcone, characteristic, isserlis; "hsvtorgb"),
     },
-    inputs: &[PortSpec::new(
+    inputs: &[exactly(
+        Type::Color3,
         "in",
-        PortType::Exactly(Type::Color3),
-        Default::Float(0.0),
+        0.0,
         "Hue in turns, saturation and value.",
     )],
     output: OutputType::Exactly(Type::Color3),
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "hsvtorgb_example",
-  "nodes": {
+    example: example! { "hsvtorgb", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},
     "other": {"type": "noise2d", "inputs": {"frequency": 4, "pivot": 0.4, "seed": 3}},
     "color": {"type": "combine3", "inputs": {"in1": {"node": "noise"}, "in2": 0.25, "in3": {"node": "other"}}},
     "hsvtorgb": {"type": "hsvtorgb", "inputs": {"in": {"node": "color"}}}
-  },
-  "outputs": { "out": { "node": "hsvtorgb" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let hsv = exposed(lower, node, "in");
     composed(lower, |lower| {
         let chroma = product(lower, &hsv[1], &hsv[2]);
         let wave = LinearWave::through(&ABSENCE);
-        [0.0, -1.0 / 3.0, -2.0 / 3.0]
-            .map(|turn| {
-                let turn = lower.b().f32(turn);
-                // The shifted hue is the same signal: it keeps its second Hermite polynomial.
-                let hue = Signal {
-                    hermite: hsv[0].hermite,
-                    ..hsv[0].offset(lower.b(), turn)
-                };
-                let absence = transfer(lower, &hue, &wave);
-                let part = product(lower, &chroma, &absence);
-                hsv[2].sub(lower.b(), &part)
-            })
-            .to_vec()
+        let channel = |turn: f32| {
+            // The shifted hue is the same signal: it keeps its second Hermite polynomial.
+            let hue = Signal {
+                hermite: hsv[0].hermite,
+                ..hsv[0].offset(turn)
+            };
+            let absence = transfer(lower, &hue, &wave);
+            &hsv[2] - product(lower, &chroma, &absence)
+        };
+        [0.0, -1.0 / 3.0, -2.0 / 3.0].map(channel).to_vec()
     })
 }

@@ -1,6 +1,6 @@
 //! Luminance of a colour.
 
-use mipless_codegen::moments::Signal;
+use crate::componentwise::total;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
@@ -23,9 +23,7 @@ static SPEC: NodeSpec = NodeSpec {
             carried.",
         accuracy: "Exact to rounding: the rule is an identity. Held by `nodes/src/tests.rs`, which \
             compares every node with its point value as the footprint goes to 0, in each mode.",
-        references: "ITU-R BT.709-6, item 3.2. Bruneton & Neyret 2012, *A Survey of Non-linear \
-            Pre-filtering Methods for Efficient and Accurate Surface Shading*, §2.2 (linear maps \
-            of a mean and a covariance). MaterialX 1.39 specification, node `luminance`.",
+        references: cite!(rec709, linear; "luminance"),
     },
     inputs: &[PortSpec::new(
         "in",
@@ -35,31 +33,20 @@ static SPEC: NodeSpec = NodeSpec {
     )],
     output: OutputType::Exactly(Type::Float),
     class: |_| Behaviour::Linear,
-    example: r##"{
-  "version": 1,
-  "name": "luminance_example",
-  "nodes": {
+    example: example! { "luminance", r##"
     "board": { "type": "checkerboard", "inputs": { "color1": "#c08a52" } },
     "luminance": { "type": "luminance", "inputs": { "in": { "node": "board" } } }
-  },
-  "outputs": { "out": { "node": "luminance" } }
-}"##,
+"## },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// The luminances of the Rec. 709 primaries.
-const WEIGHTS: [f32; 3] = [0.2126, 0.7152, 0.0722];
+pub(super) const REC_709: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = lower.bundle(node, "in");
-    let b = lower.b();
-    let mut sum = Signal::constant(b, 0.0);
-    for (channel, weight) in color.iter().zip(WEIGHTS) {
-        let weight = b.f32(weight);
-        let part = channel.scale(b, weight);
-        sum = sum.add(b, &part);
-    }
-    vec![sum]
+    let weighted = color.iter().zip(REC_709).map(|(x, weight)| x * weight);
+    vec![total(lower.b(), weighted)]
 }

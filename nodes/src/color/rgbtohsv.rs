@@ -2,10 +2,9 @@
 
 use crate::color::hsv::to_hsv_function;
 use crate::componentwise::{composed, exposed};
+use crate::port::exactly;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "rgbtohsv",
@@ -26,14 +25,12 @@ static SPEC: NodeSpec = NodeSpec {
             within the footprint, the value within 0.005, the saturation within 0.06 and the hue \
             within 0.25. Held by `nodes/src/tests/color.rs` against dense numerical integration \
             in f64.",
-        references: "Smith 1978, *Color Gamut Transform Pairs* (the hexcone). Stroud 1971, *Approximate \
-            Calculation of Multiple Integrals*, U_n 5. Clark 1961, *The Greatest of a Finite Set \
-            of Random Variables*, eqs. 2–6. MaterialX 1.39 specification, node `rgbtohsv`.",
+        references: cite!(hexcone, stroud, clark; "rgbtohsv"),
     },
-    inputs: &[PortSpec::new(
+    inputs: &[exactly(
+        Type::Color3,
         "in",
-        PortType::Exactly(Type::Color3),
-        Default::Float(0.0),
+        0.0,
         "The colour, linear Rec. 709.",
     )],
     output: OutputType::Exactly(Type::Color3),
@@ -47,28 +44,24 @@ static SPEC: NodeSpec = NodeSpec {
             Behaviour::Function
         }
     },
-    example: r#"{
-  "version": 1,
-  "name": "rgbtohsv_example",
-  "nodes": {
+    example: example! { "rgbtohsv", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "amplitude": 0.2, "pivot": 0.8}},
     "other": {"type": "noise2d", "inputs": {"frequency": 4, "amplitude": 0.2, "pivot": 0.45, "seed": 3}},
     "color": {"type": "combine3", "inputs": {"in1": {"node": "noise"}, "in2": 0.15, "in3": {"node": "other"}}},
     "rgbtohsv": {"type": "rgbtohsv", "inputs": {"in": {"node": "color"}}}
-  },
-  "outputs": { "out": { "node": "rgbtohsv" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = exposed(lower, node, "in");
+    let b = lower.b();
     let function = lower.function("rgb_to_hsv", to_hsv_function);
     composed(lower, |lower| {
         let ranges = [[0.0, 1.0], UNBOUNDED];
-        let mut out = (lower.algebra).cubature(&color, &ranges, |b, rgb| {
+        let mut out = (lower.algebra).cubature(&color, &ranges, |rgb| {
             let mut hsv = b.call(&function, rgb);
             hsv.truncate(2);
             hsv

@@ -1,7 +1,8 @@
 //! Saturation.
 
-use crate::componentwise::{composed, exposed, numbers, product};
-use mipless_codegen::ir::Value;
+use crate::componentwise::{composed, exposed, numbers, product, total};
+use crate::port::{exactly, number};
+use mipless_codegen::ir::Float;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -22,24 +23,11 @@ static SPEC: NodeSpec = NodeSpec {
             used.",
         accuracy: "Exact to rounding by a number; else as `multiply`. Held by `nodes/src/tests/color.rs` \
             against dense numerical integration in f64.",
-        references: "ITU-R BT.709-6, item 3.2. Bruneton & Neyret 2012, *A Survey of Non-linear \
-            Pre-filtering Methods for Efficient and Accurate Surface Shading*, §2.2 (linear maps \
-            of a mean and a covariance). MaterialX 1.39 specification, node `saturate`.",
+        references: cite!(rec709, linear; "saturate"),
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Exactly(Type::Color3),
-            Default::Float(0.0),
-            "The colour, linear Rec. 709.",
-        ),
-        PortSpec::new(
-            "amount",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "0 is grey, 1 changes nothing.",
-        )
-        .range(Range::soft(0.0, 2.0)),
+        exactly(Type::Color3, "in", 0.0, "The colour, linear Rec. 709."),
+        number("amount", 1.0, "0 is grey, 1 changes nothing.").range(Range::soft(0.0, 2.0)),
         PortSpec::new(
             "lumacoeffs",
             PortType::Exactly(Type::Color3),
@@ -49,17 +37,12 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Color3),
     class,
-    example: r#"{
-  "version": 1,
-  "name": "saturate_example",
-  "nodes": {
+    example: example! { "saturate", r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},
     "color": {"type": "combine3", "inputs": {"in1": {"node": "noise"}, "in2": 0.3, "in3": {"node": "bands"}}},
     "saturate": {"type": "saturate", "inputs": {"in": {"node": "color"}, "amount": 0.4}}
-  },
-  "outputs": { "out": { "node": "saturate" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -74,7 +57,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = exposed(lower, node, "in");
     let amount = lower.signal(node, "amount");
     let weights = numbers(lower, node, "lumacoeffs");
@@ -82,23 +65,14 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
 }
 
 /// L + amount (in − L).
-pub(crate) fn saturated(
-    lower: &mut Lower<'_>,
-    color: &[Signal],
-    amount: &Signal,
-    weights: &[Value],
-) -> Bundle {
-    let b = lower.b();
-    let mut grey = Signal::constant(b, 0.0);
-    for (channel, &weight) in color.iter().zip(weights) {
-        let part = channel.scale(b, weight);
-        grey = grey.add(b, &part);
-    }
-    (color.iter())
-        .map(|channel| {
-            let apart = channel.sub(lower.b(), &grey);
-            let scaled = product(lower, &apart, amount);
-            scaled.add(lower.b(), &grey)
-        })
-        .collect()
+pub(super) fn saturated<'b>(
+    lower: &mut Lower<'_, 'b>,
+    color: &[Signal<'b>],
+    amount: &Signal<'b>,
+    weights: &[Float<'b>],
+) -> Bundle<'b> {
+    let weighted = color.iter().zip(weights).map(|(x, &weight)| x * weight);
+    let grey = total(lower.b(), weighted);
+    let saturated = |x: &Signal<'b>| product(lower, &(x - &grey), amount) + &grey;
+    color.iter().map(saturated).collect()
 }

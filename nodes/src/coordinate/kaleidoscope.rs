@@ -1,12 +1,12 @@
 //! Mirrored sectors around a centre.
 
-use crate::componentwise::{difference, sum, transfer};
+use crate::componentwise::{sum, transfer};
+use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::turns;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -24,24 +24,11 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "Exact within a sector; at its edges approximate: for a noise of standard deviation 1 and \
             six cells a uv, 0.008, 0.027 and 0.062 (RMS) at footprints of 0.02, 0.06 and 0.18 cells. \
             Held by `nodes/src/pattern/tests.rs`.",
-        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. Abramowitz & \
-            Stegun 1964, 4.4.49 (arctangent).",
+        references: cite!(heckbert, arctangent),
     },
     inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.5, 0.5]),
-            "The centre.",
-        )
-        .unit("uv"),
+        TEXCOORD,
+        CENTER,
         PortSpec::new(
             "segments",
             PortType::Exactly(Type::Integer),
@@ -53,48 +40,25 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("sectors"),
     ],
     output: OutputType::Exactly(Type::Vector2),
-    class,
-    example: r##"{
-  "version": 1,
-  "name": "kaleidoscope_example",
-  "nodes": {
+    class: |_| Behaviour::Function,
+    example: example! { "kaleidoscope" => "grain", r##"
     "tile": { "type": "repeat" },
     "kaleidoscope": { "type": "kaleidoscope", "inputs": { "texcoord": { "node": "tile" }, "segments": 7 } },
     "grain": { "type": "noise2d", "inputs": { "texcoord": { "node": "kaleidoscope" }, "frequency": 9, "pivot": 0.5 } }
-  },
-  "outputs": { "out": { "node": "grain" } }
-}"##,
+"## },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of both coordinates.
-fn class(_: &dyn InputView) -> Behaviour {
-    Behaviour::Function
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let (centre, [x, y]) = centred(lower, node);
     let segments = lower.integer(node, "segments").max(1) as f32;
-    let [x, y] = [0, 1].map(|i| difference(lower, &texcoord[i], &centre[i]));
-    let angle = turns(lower, [&x, &y]);
-    let b = lower.b();
     // The sector around the axis is number 0.
-    let sector = b.scale(angle, segments);
-    let sector = b.offset(sector, 0.5);
-    let sector = b.floor(sector);
-    let back = b.scale(sector, std::f32::consts::TAU / segments);
-    let (sine, cosine) = (b.sin(back), b.cos(back));
-    let minus = b.neg(sine);
-    let [along, across] = [[cosine, sine], [minus, cosine]].map(|[p, q]| {
-        let (of_x, of_y) = (x.scale(b, p), y.scale(b, q));
-        of_x.add(b, &of_y)
-    });
-    let absolute = Piecewise::absolute(b);
-    let folded = transfer(lower, &across, &absolute);
-    vec![
-        sum(lower, &along, &centre[0]),
-        sum(lower, &folded, &centre[1]),
-    ]
+    let sector = (turns([&x, &y]) * segments + 0.5).floor();
+    let back = sector * (std::f32::consts::TAU / segments);
+    let (sine, cosine) = (back.sin(), back.cos());
+    let [along, across] = [[cosine, sine], [-sine, cosine]].map(|[p, q]| &x * p + &y * q);
+    let folded = transfer(lower, &across, &Piecewise::absolute(lower.b()));
+    vec![sum(&along, &centre[0]), sum(&folded, &centre[1])]
 }

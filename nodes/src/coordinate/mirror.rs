@@ -1,11 +1,11 @@
 //! Coordinates that are mirrored back and forth.
 
 use crate::componentwise::{product, transfer};
+use crate::coordinate::place::TEXCOORD;
 use crate::pattern::triangle::Triangle;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -24,17 +24,10 @@ static SPEC: NodeSpec = NodeSpec {
             noise of standard deviation 1 and six cells a tile that is read there, the mean is \
             within 0.001, 0.002 and 0.008 (RMS) at footprints of 0.02, 0.06 and 0.18 cells. Held by \
             `nodes/src/pattern/tests.rs`.",
-        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1.",
+        references: cite!(bussgang),
     },
     inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
+        TEXCOORD,
         PortSpec::new(
             "uvtiling",
             PortType::Exactly(Type::Vector2),
@@ -51,31 +44,18 @@ static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Exactly(Type::Vector2),
-    class,
-    example: r##"{
-  "version": 1,
-  "name": "mirror_example",
-  "nodes": {
+    class: |_| Behaviour::Function,
+    example: example! { "mirror" => "grain", r##"
     "mirror": { "type": "mirror", "inputs": { "uvtiling": [3, 2] } },
     "grain": { "type": "noise2d", "inputs": { "texcoord": { "node": "mirror" }, "frequency": 5, "pivot": 0.5 } }
-  },
-  "outputs": { "out": { "node": "grain" } }
-}"##,
+"## },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of each coordinate.
-fn class(_: &dyn InputView) -> Behaviour {
-    Behaviour::Function
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let (texcoord, tiling) = (
-        lower.bundle(node, "texcoord"),
-        lower.bundle(node, "uvtiling"),
-    );
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let [texcoord, tiling] = ["texcoord", "uvtiling"].map(|port| lower.bundle(node, port));
     let axis = lower.choice(node, "axis");
     [("u", 0), ("v", 1)]
         .map(|(name, i)| {
@@ -83,10 +63,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
             if axis != "both" && axis != name {
                 return tiled;
             }
-            let b = lower.b();
-            let half = b.f32(0.5);
-            let phase = tiled.scale(b, half);
-            transfer(lower, &phase, &Triangle)
+            transfer(lower, &(tiled * 0.5), &Triangle)
         })
         .to_vec()
 }

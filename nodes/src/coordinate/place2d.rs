@@ -1,7 +1,9 @@
 //! Placement of texture coordinates.
 
 use crate::componentwise::{difference, quotient, sum};
+use crate::coordinate::place::TEXCOORD;
 use crate::coordinate::rotate2d::rotated;
+use crate::port::number;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -31,17 +33,10 @@ static SPEC: NodeSpec = NodeSpec {
             of `sin` and `divide` and a product, approximate.",
         accuracy: "Exact to rounding; a position keeps its integer cell and its fraction. Held by \
             `nodes/src/tests.rs`.",
-        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
-            MaterialX 1.39 specification, node `place2d`.",
+        references: cite!(heckbert; "place2d"),
     },
     inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
+        TEXCOORD,
         PortSpec::new(
             "pivot",
             PortType::Exactly(Type::Vector2),
@@ -58,14 +53,9 @@ static SPEC: NodeSpec = NodeSpec {
         )
         .range(Range::soft(0.1, 10.0).nonzero())
         .unit("dimensionless"),
-        PortSpec::new(
-            "rotate",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The angle, counter-clockwise.",
-        )
-        .range(Range::soft(-180.0, 180.0))
-        .unit("degrees"),
+        number("rotate", 0.0, "The angle, counter-clockwise.")
+            .range(Range::soft(-180.0, 180.0))
+            .unit("degrees"),
         PortSpec::new(
             "offset",
             PortType::Exactly(Type::Vector2),
@@ -83,15 +73,10 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Vector2),
     class,
-    example: r#"{
-  "version": 1,
-  "name": "place2d_example",
-  "nodes": {
+    example: example! { "place2d" => "board", r#"
     "place2d": { "type": "place2d", "inputs": { "pivot": [0.5, 0.5], "scale": [0.5, 0.25], "rotate": 20 } },
     "board": { "type": "checkerboard", "inputs": { "texcoord": { "node": "place2d" } } }
-  },
-  "outputs": { "out": { "node": "board" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -99,34 +84,31 @@ pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// Linear in position, pivot and offset; a varying angle or scale multiplies.
 fn class(inputs: &dyn InputView) -> Behaviour {
-    if inputs.varies("rotate") || inputs.varies("scale") {
-        let others = ["texcoord", "pivot", "offset"]
-            .into_iter()
-            .any(|port| inputs.varies(port));
-        if others {
-            Behaviour::Product
-        } else {
-            Behaviour::Function
-        }
-    } else {
-        Behaviour::Linear
+    let others = ["texcoord", "pivot", "offset"];
+    match (
+        others.iter().any(|port| inputs.varies(port)),
+        inputs.varies("rotate") || inputs.varies("scale"),
+    ) {
+        (_, false) => Behaviour::Linear,
+        (false, true) => Behaviour::Function,
+        (true, true) => Behaviour::Product,
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, pivot, scale, offset] =
         ["texcoord", "pivot", "scale", "offset"].map(|port| lower.bundle(node, port));
     let angle = lower.signal(node, "rotate");
     let scaled_first = lower.choice(node, "operationorder") == "SRT";
-    let mut place = [0, 1].map(|i| difference(lower, &texcoord[i], &pivot[i]));
+    let mut place = [0, 1].map(|i| difference(&texcoord[i], &pivot[i]));
     if scaled_first {
         place = [0, 1].map(|i| quotient(lower, &place[i], &scale[i]));
         place = rotated(lower, [&place[0], &place[1]], &angle);
-        place = [0, 1].map(|i| difference(lower, &place[i], &offset[i]));
+        place = [0, 1].map(|i| difference(&place[i], &offset[i]));
     } else {
-        place = [0, 1].map(|i| difference(lower, &place[i], &offset[i]));
+        place = [0, 1].map(|i| difference(&place[i], &offset[i]));
         place = rotated(lower, [&place[0], &place[1]], &angle);
         place = [0, 1].map(|i| quotient(lower, &place[i], &scale[i]));
     }
-    (0..2).map(|i| sum(lower, &place[i], &pivot[i])).collect()
+    (0..2).map(|i| sum(&place[i], &pivot[i])).collect()
 }

@@ -1,12 +1,9 @@
 //! Polar coordinates.
 
-use crate::componentwise::difference;
+use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::polar;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "polar",
@@ -29,49 +26,25 @@ static SPEC: NodeSpec = NodeSpec {
             the footprint goes on beyond 1: exact for whatever repeats with θ.",
         accuracy: "For footprints of up to 0.3 |m| the mean of θ is within 0.02 turns; at the centre the \
             mean of r is within 5 % of the footprint. Held by `nodes/src/pattern/tests.rs`.",
-        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. Abramowitz & \
-            Stegun 1964, 4.4.49 (arctangent). Rice 1945, *Mathematical Analysis of Random Noise* \
-            (the distribution of r).",
+        references: cite!(
+            heckbert,
+            arctangent,
+            "Rice 1945, *Mathematical Analysis of Random Noise* (the distribution of r)."
+        ),
     },
-    inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.5, 0.5]),
-            "The centre.",
-        )
-        .unit("uv"),
-    ],
+    inputs: &[TEXCOORD, CENTER],
     output: OutputType::Exactly(Type::Vector2),
-    class,
-    example: r##"{
-  "version": 1,
-  "name": "polar_example",
-  "nodes": {
+    class: |_| Behaviour::Function,
+    example: example! { "polar" => "rays", r##"
     "polar": { "type": "polar" },
     "rays": { "type": "stripes", "inputs": { "texcoord": { "node": "polar" }, "frequency": 9 } }
-  },
-  "outputs": { "out": { "node": "rays" } }
-}"##,
+"## },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of both coordinates.
-fn class(_: &dyn InputView) -> Behaviour {
-    Behaviour::Function
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
-    let [x, y] = [0, 1].map(|i| difference(lower, &texcoord[i], &centre[i]));
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let (_, [x, y]) = centred(lower, node);
     polar(lower, [&x, &y]).to_vec()
 }

@@ -1,6 +1,7 @@
 //! Coordinates that repeat.
 
 use crate::componentwise::product;
+use crate::coordinate::place::TEXCOORD;
 use crate::pattern::separable::phase;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
@@ -31,13 +32,7 @@ static SPEC: NodeSpec = NodeSpec {
             of a footprint).",
     },
     inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
+        TEXCOORD,
         PortSpec::new(
             "uvtiling",
             PortType::Exactly(Type::Vector2),
@@ -49,15 +44,10 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Vector2),
     class,
-    example: r##"{
-  "version": 1,
-  "name": "repeat_example",
-  "nodes": {
+    example: example! { "repeat" => "disc", r##"
     "repeat": { "type": "repeat", "inputs": { "uvtiling": [3, 3] } },
     "disc": { "type": "ramplr", "inputs": { "texcoord": { "node": "repeat" }, "valuer": 1 } }
-  },
-  "outputs": { "out": { "node": "disc" } }
-}"##,
+"## },
 };
 
 /// The definition.
@@ -65,25 +55,21 @@ pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// Linear within the tile of the centre.
 fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["uvtiling"].into_iter().any(|port| inputs.varies(port)) {
+    if inputs.varies("uvtiling") {
         Behaviour::Product
     } else {
         Behaviour::Linear
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let (texcoord, tiling) = (
-        lower.bundle(node, "texcoord"),
-        lower.bundle(node, "uvtiling"),
-    );
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let [texcoord, tiling] = ["texcoord", "uvtiling"].map(|port| lower.bundle(node, port));
     (texcoord.iter().zip(&tiling))
         .map(|(coordinate, tiling)| {
             let tiled = product(lower, coordinate, tiling);
-            let mean = phase(lower.b(), &tiled);
             // The cell is known to be 0 and no longer followed.
             Signal {
-                mean,
+                mean: phase(&tiled),
                 cell: None,
                 range: [f32::NEG_INFINITY, f32::INFINITY],
                 ..tiled

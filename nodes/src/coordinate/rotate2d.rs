@@ -1,14 +1,14 @@
 //! Rotation of a vector in the plane.
 
-use mipless_codegen::ir::{Builder, SharedFunction, Value};
+use crate::componentwise::{product, transfer};
+use crate::port::number;
+use mipless_codegen::ir::{Float, Scalar, SharedFunction, Vec2};
 use mipless_codegen::moments::{Signal, Sine};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
     Range, Type,
 };
-
-use crate::componentwise::{product, transfer};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "rotate2d",
@@ -25,10 +25,11 @@ static SPEC: NodeSpec = NodeSpec {
             and a product, as `sin` and `multiply` do.",
         accuracy: "Exact to rounding; multiples of 90 degrees are exact to the bit. Held by \
             `nodes/src/tests.rs`.",
-        references: "Bruneton & Neyret 2012, *A Survey of Non-linear Pre-filtering Methods for Efficient \
-            and Accurate Surface Shading*, §2.2 (linear maps of a mean and a covariance). The \
-            direction is counter-clockwise, as every angle of a document; names and defaults are \
-            those of the node `rotate2d` of the MaterialX 1.39 specification.",
+        references: cite!(
+            linear,
+            "The direction is counter-clockwise, as every angle of a document; names and \
+             defaults are those of the node `rotate2d` of the MaterialX 1.39 specification."
+        ),
     },
     inputs: &[
         PortSpec::new(
@@ -38,26 +39,16 @@ static SPEC: NodeSpec = NodeSpec {
             "The vector.",
         )
         .unit("uv"),
-        PortSpec::new(
-            "amount",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The angle, counter-clockwise.",
-        )
-        .range(Range::soft(-180.0, 180.0))
-        .unit("degrees"),
+        number("amount", 0.0, "The angle, counter-clockwise.")
+            .range(Range::soft(-180.0, 180.0))
+            .unit("degrees"),
     ],
     output: OutputType::Exactly(Type::Vector2),
     class,
-    example: r#"{
-  "version": 1,
-  "name": "rotate2d_example",
-  "nodes": {
+    example: example! { "rotate2d", r#"
     "uv": { "type": "texcoord" },
     "rotate2d": { "type": "rotate2d", "inputs": { "in": { "node": "uv" }, "amount": 30 } }
-  },
-  "outputs": { "out": { "node": "rotate2d" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -72,109 +63,84 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let vector = lower.bundle(node, "in");
     let angle = lower.signal(node, "amount");
     rotated(lower, [&vector[0], &vector[1]], &angle).to_vec()
 }
 
 /// A vector turned counter-clockwise by an angle in degrees.
-pub(crate) fn rotated(
-    lower: &mut Lower<'_>,
-    [x, y]: [&Signal; 2],
-    degrees: &Signal,
-) -> [Signal; 2] {
-    let b = lower.b();
-    if degrees.is_certain(b) && b.is_zero(degrees.mean) && degrees.cell.is_none() {
+pub(crate) fn rotated<'b>(
+    lower: &mut Lower<'_, 'b>,
+    [x, y]: [&Signal<'b>; 2],
+    degrees: &Signal<'b>,
+) -> [Signal<'b>; 2] {
+    if degrees.is_certain() && degrees.mean.is_zero() && degrees.cell.is_none() {
         return [x.clone(), y.clone()];
     }
     let [cosine, sine] = turn(lower, degrees);
-    let b = lower.b();
-    if let (Some(x), Some(y)) = (place(b, x), place(b, y))
-        && cosine.is_certain(b)
-        && sine.is_certain(b)
+    if let (Some(x), Some(y)) = (place(x), place(y))
+        && cosine.is_certain()
+        && sine.is_certain()
     {
-        return turned(b, [x, y], [cosine.mean, sine.mean]);
+        return turned([x, y], [cosine.mean, sine.mean]);
     }
     let (cx, sy) = (product(lower, x, &cosine), product(lower, y, &sine));
     let (sx, cy) = (product(lower, x, &sine), product(lower, y, &cosine));
-    let b = lower.b();
-    [cx.sub(b, &sy), sx.add(b, &cy)]
+    [cx - sy, sx + cy]
 }
 
-/// A coordinate that carries nothing but a cell, a fraction and its response to the footprint.
-fn place(b: &Builder, x: &Signal) -> Option<[Value; 4]> {
-    let plain = x.shared.is_empty() && b.is_zero(x.private) && x.h.iter().all(|&h| b.is_zero(h));
-    plain.then_some([x.cell?, x.mean, x.g[0], x.g[1]])
+/// What a coordinate carries that has nothing but a cell, a fraction and its response to the
+/// footprint.
+fn place<'b>(x: &Signal<'b>) -> Option<[Scalar<'b>; 4]> {
+    let plain = x.shared.is_empty() && x.private.is_zero() && x.h.iter().all(|h| h.is_zero());
+    let cell = x.cell.filter(|_| plain)?;
+    Some([cell.into(), x.mean.into(), x.g[0].into(), x.g[1].into()])
+}
+
+/// The coordinate of these.
+fn coordinate<'b>(place: &[Scalar<'b>]) -> Signal<'b> {
+    Signal {
+        cell: Some(place[0].int()),
+        g: Vec2([place[2].float(), place[3].float()]),
+        ..Signal::certain(place[1].float())
+    }
+    .with_range([f32::NEG_INFINITY, f32::INFINITY])
 }
 
 /// Two such coordinates turned by an angle of this cosine and sine.
-fn turned(b: &mut Builder, [x, y]: [[Value; 4]; 2], [cosine, sine]: [Value; 2]) -> [Signal; 2] {
+fn turned<'b>(places: [[Scalar<'b>; 4]; 2], circle: [Float<'b>; 2]) -> [Signal<'b>; 2] {
     let of = SharedFunction {
         name: "turn",
         variant: 0,
         doc: "A position turned about the origin.",
     };
-    let mut inputs = Vec::new();
-    for (names, place) in [(X, x), (Y, y)] {
-        inputs.extend(names.into_iter().zip(place));
-    }
-    inputs.extend([("cosine", cosine), ("sine", sine)]);
-    let signal = |b: &mut Builder, v: &[Value]| {
-        Signal {
-            cell: Some(v[0]),
-            g: [v[2], v[3]],
-            ..Signal::certain(b, v[1])
-        }
-        .with_range(UNBOUNDED)
-    };
-    let results = b.shared(of, &inputs, |b, v| {
-        let (x, y) = (signal(b, &v[..4]), signal(b, &v[4..8]));
-        let (cx, sx) = (x.scale(b, v[8]), x.scale(b, v[9]));
-        let (cy, sy) = (y.scale(b, v[8]), y.scale(b, v[9]));
-        let (x, y) = (cx.sub(b, &sy), sx.add(b, &cy));
-        let cell = |signal: &Signal| signal.cell.expect("sums of positions keep their cells");
-        [
-            (X[0], cell(&x)),
-            (X[1], x.mean),
-            (X[2], x.g[0]),
-            (X[3], x.g[1]),
-            (Y[0], cell(&y)),
-            (Y[1], y.mean),
-            (Y[2], y.g[0]),
-            (Y[3], y.g[1]),
-        ]
+    let names = PLACES.into_iter().chain(["cosine", "sine"]);
+    let values = (places.into_iter().flatten()).chain(circle.map(Scalar::from));
+    let inputs: Vec<_> = names.zip(values).collect();
+    let results = circle[0].builder().shared_scalars(of, &inputs, |_, v| {
+        let (x, y) = (coordinate(&v[..4]), coordinate(&v[4..8]));
+        let [cosine, sine] = [v[8], v[9]].map(Scalar::float);
+        let turned = [&x * cosine - &y * sine, &x * sine + &y * cosine];
+        let [x, y] = turned.map(|x| place(&x).expect("sums of positions keep their cells"));
+        let mut values = x.into_iter().chain(y);
+        PLACES.map(|name| (name, values.next().expect("one for each name")))
     });
-    [&results[..4], &results[4..]].map(|v| signal(b, v))
+    [&results[..4], &results[4..]].map(coordinate)
 }
 
-const X: [&str; 4] = ["cell_x", "x", "x_gx", "x_gy"];
-const Y: [&str; 4] = ["cell_y", "y", "y_gx", "y_gy"];
-const UNBOUNDED: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
+/// The names of what two coordinates carry.
+const PLACES: [&str; 8] = ["cell_x", "x", "x_gx", "x_gy", "cell_y", "y", "y_gx", "y_gy"];
 
 /// The cosine and sine of an angle in degrees.
-pub(crate) fn turn(lower: &mut Lower<'_>, degrees: &Signal) -> [Signal; 2] {
-    let b = lower.b();
-    if let Some(angle) = b
-        .as_constant(degrees.mean)
-        .filter(|_| degrees.is_certain(b))
-    {
-        let quarters = (angle / 90.0).rem_euclid(4.0);
-        if quarters.fract() == 0.0 {
-            // Quarter turns are exact: their cosine in f32 would be 4e-8, and move far cells.
-            let [cosine, sine] =
-                [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]][quarters as usize % 4];
-            return [Signal::constant(b, cosine), Signal::constant(b, sine)];
-        }
+pub(crate) fn turn<'b>(lower: &mut Lower<'_, 'b>, degrees: &Signal<'b>) -> [Signal<'b>; 2] {
+    let number = degrees.mean.as_constant().filter(|_| degrees.is_certain());
+    let quarters = number.map(|angle| (angle / 90.0).rem_euclid(4.0));
+    if let Some(quarters) = quarters.filter(|quarters| quarters.fract() == 0.0) {
+        // Quarter turns are exact: their cosine in f32 would be 4e-8, and move far cells.
+        let circle = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+        return circle[quarters as usize % 4].map(|x| Signal::constant(lower.b(), x));
     }
-    let factor = b.f32(std::f32::consts::PI / 180.0);
-    let radians = degrees.scale(b, factor);
-    let cosine = transfer(
-        lower,
-        &radians,
-        &Sine {
-            phase: std::f32::consts::FRAC_PI_2,
-        },
-    );
-    [cosine, transfer(lower, &radians, &Sine { phase: 0.0 })]
+    let radians = degrees * (std::f32::consts::PI / 180.0);
+    [std::f32::consts::FRAC_PI_2, 0.0].map(|phase| transfer(lower, &radians, &Sine { phase }))
 }

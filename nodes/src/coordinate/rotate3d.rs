@@ -2,6 +2,7 @@
 
 use crate::componentwise::{numbers, product, sum};
 use crate::coordinate::rotate2d::turn;
+use crate::port::{exactly, number};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -22,24 +23,16 @@ static SPEC: NodeSpec = NodeSpec {
             turned. A varying angle goes through the closed forms of sine and cosine and a product. Of a \
             varying axis the mean is used.",
         accuracy: "Exact to rounding for a constant angle. Held by `nodes/src/tests/channel.rs`.",
-        references: "Rodrigues 1840, *Des lois géométriques qui régissent les déplacements d'un système \
-            solide*. MaterialX 1.39 specification, node `rotate3d`.",
+        references: cite!(
+            "Rodrigues 1840, *Des lois géométriques qui régissent les déplacements d'un système \
+             solide*."; "rotate3d"
+        ),
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Exactly(Type::Vector3),
-            Default::Float(0.0),
-            "The vector.",
-        ),
-        PortSpec::new(
-            "amount",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The angle, counter-clockwise.",
-        )
-        .range(Range::soft(-180.0, 180.0))
-        .unit("degrees"),
+        exactly(Type::Vector3, "in", 0.0, "The vector."),
+        number("amount", 0.0, "The angle, counter-clockwise.")
+            .range(Range::soft(-180.0, 180.0))
+            .unit("degrees"),
         PortSpec::new(
             "axis",
             PortType::Exactly(Type::Vector3),
@@ -50,16 +43,11 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Vector3),
     class,
-    example: r#"{
-  "version": 1,
-  "name": "rotate3d_example",
-  "nodes": {
+    example: example! { "rotate3d" => "grain", r#"
     "place": { "type": "position" },
     "rotate3d": { "type": "rotate3d", "inputs": { "in": { "node": "place" }, "amount": 30, "axis": [1, 1, 0] } },
     "grain": { "type": "noise3d", "inputs": { "position": { "node": "rotate3d" }, "frequency": 4 } }
-  },
-  "outputs": { "out": { "node": "grain" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -77,47 +65,34 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let vector = lower.bundle(node, "in");
     let angle = lower.signal(node, "amount");
     let axis = numbers(lower, node, "axis");
     let [cosine, sine] = turn(lower, &angle);
-    let b = lower.b();
-    let square = b.dot(&axis, &axis);
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-    let directed = b.lt(zero, square);
-    let guarded = b.select(directed, square, one);
-    let length = b.sqrt(guarded);
-    let axis: Vec<_> = axis.iter().map(|&x| b.div(x, length)).collect();
+    let square = lower.b().sum(axis.iter().map(|x| x.square()));
+    let directed = square.gt(0.0);
+    let length = directed.select(square, 1.0).sqrt();
+    let axis: Vec<_> = axis.iter().map(|&x| x / length).collect();
     // Without an axis there is no turn: 1 − c and s are 0 then.
-    let here = b.select(directed, one, zero);
-    let minus = cosine.negate(b).offset(b, one);
-    let (left, sine) = (minus.scale(b, here), sine.scale(b, here));
+    let here = directed.select(1.0f32, 0.0);
+    let (left, sine) = ((-cosine).offset(1.0) * here, sine * here);
     // p + s k × p + (1 − c)((k · p) k − p).
     (0..3)
         .map(|i| {
-            let mut out = vector[i].clone();
-            for j in 0..3 {
-                let b = lower.b();
-                let projector = b.mul(axis[i], axis[j]);
-                let projector = if i == j {
-                    b.offset(projector, -1.0)
-                } else {
-                    projector
-                };
-                let mut entry = left.scale(b, projector);
+            (0..3).fold(vector[i].clone(), |out, j| {
+                let mut projector = axis[i] * axis[j];
+                if i == j {
+                    projector += -1.0;
+                }
+                let mut entry = &left * projector;
                 // (k × p)ᵢ = kⱼ′ pⱼ″ − kⱼ″ pⱼ′.
                 if i != j {
-                    let other = axis[3 - i - j];
                     let sign = if (i + 1) % 3 == j { -1.0 } else { 1.0 };
-                    let by = b.scale(other, sign);
-                    let cross = sine.scale(b, by);
-                    entry = entry.add(b, &cross);
+                    entry = entry + &sine * (axis[3 - i - j] * sign);
                 }
-                let part = product(lower, &vector[j], &entry);
-                out = sum(lower, &out, &part);
-            }
-            out
+                sum(&out, &product(lower, &vector[j], &entry))
+            })
         })
         .collect()
 }

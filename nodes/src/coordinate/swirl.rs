@@ -1,12 +1,11 @@
 //! Coordinates turned around a centre, most in the middle.
 
-use crate::componentwise::{difference, sum};
+use crate::componentwise::sum;
+use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::swirled;
+use crate::port::number;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "swirl",
@@ -26,62 +25,35 @@ static SPEC: NodeSpec = NodeSpec {
             of a warp).",
     },
     inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.5, 0.5]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
+        TEXCOORD,
+        CENTER,
+        number(
             "amount",
-            PortType::Exactly(Type::Float),
-            Default::Float(180.0),
+            180.0,
             "The angle in the middle, counter-clockwise.",
         )
         .range(Range::soft(-720.0, 720.0))
         .unit("degrees"),
-        PortSpec::new(
-            "radius",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "Where the turning ends.",
-        )
-        .range(Range::hard(1e-6, f32::MAX).with_soft(0.01, 1.0))
-        .unit("uv"),
+        number("radius", 0.5, "Where the turning ends.")
+            .range(Range::hard(1e-6, f32::MAX).with_soft(0.01, 1.0))
+            .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Vector2),
-    class,
-    example: r##"{
-  "version": 1,
-  "name": "swirl_example",
-  "nodes": {
+    class: |_| Behaviour::Function,
+    example: example! { "swirl" => "bands", r##"
     "swirl": { "type": "swirl", "inputs": { "amount": 240 } },
     "bands": { "type": "stripes", "inputs": { "texcoord": { "node": "swirl" }, "frequency": 10 } }
-  },
-  "outputs": { "out": { "node": "bands" } }
-}"##,
+"## },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of both coordinates.
-fn class(_: &dyn InputView) -> Behaviour {
-    Behaviour::Function
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let (centre, [x, y]) = centred(lower, node);
     let [amount, radius] = ["amount", "radius"].map(|port| lower.number(node, port));
-    let [x, y] = [0, 1].map(|i| difference(lower, &texcoord[i], &centre[i]));
-    let [x, y] = swirled(lower, [&x, &y], amount, radius);
-    vec![sum(lower, &x, &centre[0]), sum(lower, &y, &centre[1])]
+    let turned = swirled(lower, [&x, &y], amount, radius);
+    (turned.iter().zip(&centre))
+        .map(|(x, centre)| sum(x, centre))
+        .collect()
 }

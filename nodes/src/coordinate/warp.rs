@@ -1,6 +1,8 @@
 //! Coordinates displaced by a signal.
 
 use crate::componentwise::{product, sum};
+use crate::coordinate::place::TEXCOORD;
+use crate::port::number;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -31,45 +33,27 @@ static SPEC: NodeSpec = NodeSpec {
             without the Jacobian it would be 0.02, 0.16 and 0.25. Displaced by noises of its own \
             wavelength, whose folds a Jacobian does not describe, it is within 0.006, 0.12 and 0.23. \
             Measured by the benchmark `warp`.",
-        references: "Bruneton & Neyret 2012, *A Survey of Non-linear Pre-filtering Methods for Efficient and \
-            Accurate Surface Shading*, §2.2 (linear maps of a mean and a covariance). Heckbert 1989, \
-            *Fundamentals of Texture Mapping and Image Warping*, §3.5.8.",
+        references: cite!(linear, heckbert),
     },
     inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
+        TEXCOORD,
         PortSpec::new(
             "in",
             PortType::Exactly(Type::Vector2),
             Default::Vector2([0.0, 0.0]),
             "The displacement.",
         ),
-        PortSpec::new(
-            "strength",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.1),
-            "How far a displacement of 1 moves.",
-        )
-        .range(Range::soft(-1.0, 1.0))
-        .unit("uv"),
+        number("strength", 0.1, "How far a displacement of 1 moves.")
+            .range(Range::soft(-1.0, 1.0))
+            .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Vector2),
     class,
-    example: r##"{
-  "version": 1,
-  "name": "warp_example",
-  "nodes": {
+    example: example! { "warp" => "bands", r##"
     "swell": { "type": "noise2d", "inputs": { "frequency": 3, "seed": 4 } },
     "warp": { "type": "warp", "inputs": { "in": { "node": "swell" }, "strength": 0.2 } },
     "bands": { "type": "stripes", "inputs": { "texcoord": { "node": "warp" }, "frequency": 9 } }
-  },
-  "outputs": { "out": { "node": "bands" } }
-}"##,
+"## },
 };
 
 /// The definition.
@@ -84,13 +68,10 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let (texcoord, by) = (lower.bundle(node, "texcoord"), lower.bundle(node, "in"));
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let [texcoord, by] = ["texcoord", "in"].map(|port| lower.bundle(node, port));
     let strength = lower.signal(node, "strength");
     (texcoord.iter().zip(&by))
-        .map(|(coordinate, by)| {
-            let shift = product(lower, by, &strength);
-            sum(lower, coordinate, &shift)
-        })
+        .map(|(coordinate, by)| sum(coordinate, &product(lower, by, &strength)))
         .collect()
 }

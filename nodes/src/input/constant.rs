@@ -1,9 +1,8 @@
 //! A literal.
 
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-};
+use crate::port::any;
+use mipless_codegen::NodeDef;
+use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "constant",
@@ -15,9 +14,9 @@ static SPEC: NodeSpec = NodeSpec {
             (`vector2`), or a colour.",
         statistics: "Constant: the mean is the value, and there is no spread.",
         accuracy: "Exact. Held by `nodes/src/tests.rs`.",
-        references: "MaterialX 1.39 specification, node `constant`.",
+        references: cite!(; "constant"),
     },
-    inputs: &[PortSpec::new("value", PortType::Any, Default::Float(0.0), "The value.").uniform()],
+    inputs: &[any("value", 0.0, "The value.").uniform()],
     output: OutputType::Widest,
     class: |_| Behaviour::Constant,
     example: r##"{
@@ -31,8 +30,7 @@ static SPEC: NodeSpec = NodeSpec {
 };
 
 /// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    lower.bundle(node, "value")
-}
+pub(crate) const DEF: NodeDef = NodeDef {
+    spec: &SPEC,
+    lower: |lower, node| lower.bundle(node, "value"),
+};

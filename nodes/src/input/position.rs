@@ -23,8 +23,7 @@ static SPEC: NodeSpec = NodeSpec {
             its neighbours and s is the standard deviation of the pixel filter in pixels.",
         accuracy: "Exact for a surface that is flat within the pixel. The mean is carried as an integer \
             cell and a fraction in [0, 1), so it keeps its detail up to coordinates of 8 million.",
-        references: "MaterialX 1.39 specification, node `position`. Heckbert 1989, *Fundamentals of \
-            Texture Mapping and Image Warping*, §3.5.8.",
+        references: cite!("MaterialX 1.39 specification, node `position`.", heckbert),
     },
     inputs: &[PortSpec::new(
         "space",
@@ -34,14 +33,9 @@ static SPEC: NodeSpec = NodeSpec {
     )],
     output: OutputType::Exactly(Type::Vector3),
     class: |_| Behaviour::Position,
-    example: r#"{
-  "version": 1,
-  "name": "position_example",
-  "nodes": {
+    example: example! { "position", r#"
     "position": { "type": "position" }
-  },
-  "outputs": { "out": { "node": "position" } }
-}"#,
+"# },
 };
 
 /// The definition.

@@ -1,7 +1,7 @@
 //! The texture coordinates of the surface.
 
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_codegen::NodeDef;
+use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "texcoord",
@@ -17,25 +17,21 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "Exact for a surface that is flat within the pixel. The mean is carried as an integer \
             cell and a fraction in [0, 1), so it keeps its detail up to coordinates of 8 \
             million.",
-        references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (Gaussian \
-            footprints under affine maps). MaterialX 1.39 specification, node `texcoord`.",
+        references: cite!(
+            "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 \
+             (Gaussian footprints under affine maps)."; "texcoord"
+        ),
     },
     inputs: &[],
     output: OutputType::Exactly(Type::Vector2),
     class: |_| Behaviour::Position,
-    example: r#"{
-  "version": 1,
-  "name": "texcoord_example",
-  "nodes": {
+    example: example! { "texcoord", r#"
     "texcoord": { "type": "texcoord" }
-  },
-  "outputs": { "out": { "node": "texcoord" } }
-}"#,
+"# },
 };
 
 /// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower(lower: &mut Lower<'_>, _: &Node) -> Bundle {
-    lower.surface()
-}
+pub(crate) const DEF: NodeDef = NodeDef {
+    spec: &SPEC,
+    lower: |lower, _| lower.surface(),
+};

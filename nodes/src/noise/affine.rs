@@ -1,22 +1,22 @@
 //! What scales and shifts a noise.
 
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Builder, Float};
 
 /// What is added to a noise and what multiplies it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Affine {
+pub(crate) struct Affine<'b> {
     /// The factor.
-    pub(crate) amplitude: Value,
+    pub(crate) amplitude: Float<'b>,
     /// The term.
-    pub(crate) pivot: Value,
+    pub(crate) pivot: Float<'b>,
 }
 
-impl Affine {
+impl<'b> Affine<'b> {
     /// The noise itself.
-    pub(crate) fn unit(b: &mut Builder) -> Self {
+    pub(crate) fn unit(b: &'b Builder) -> Self {
         Self {
-            amplitude: b.f32(1.0),
-            pivot: b.f32(0.0),
+            amplitude: b.float(1.0),
+            pivot: b.float(0.0),
         }
     }
 }

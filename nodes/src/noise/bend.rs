@@ -5,35 +5,27 @@
 //! footprint removes in the second order, κF with κ = ½‖E[g gᵀ]‖²/F² is locally κM². Without
 //! Hessians that replaces as much of the remainder. For waves of one direction it is all of V₂.
 
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Float, Sym2, dot};
 
 /// The remainder `rest` with the part κF at its local value: `outer` = E[g gᵀ] = E[JᵀWJ] given as W,
 /// the covariance of the gradient by position, and the spread Σ of the position.
-pub(crate) fn localized(
-    b: &mut Builder,
-    rest: Value,
-    mean: Value,
-    energy: Value,
-    w: [Value; 3],
-    s: [Value; 3],
-) -> Value {
+pub(crate) fn localized<'b>(
+    rest: Float<'b>,
+    mean: Float<'b>,
+    energy: Float<'b>,
+    w: Sym2<'b>,
+    s: Sym2<'b>,
+) -> Float<'b> {
     // ‖E[g gᵀ]‖² = tr (WΣ)².
-    let xx = b.dot(&[w[0], w[1]], &[s[0], s[1]]);
-    let xy = b.dot(&[w[0], w[1]], &[s[1], s[2]]);
-    let yx = b.dot(&[w[1], w[2]], &[s[0], s[1]]);
-    let yy = b.dot(&[w[1], w[2]], &[s[1], s[2]]);
-    let squares = b.dot(&[xx, yy], &[xx, yy]);
-    let cross = b.mul(xy, yx);
-    let cross = b.add(cross, cross);
-    let norm = b.add(squares, cross);
-    let tiny = b.f32(1e-6);
-    let energy = b.max(energy, tiny);
-    let half = b.scale(norm, 0.5);
-    let expected = b.div(half, energy);
-    let expected = b.min(expected, rest);
-    let kept = b.sub(rest, expected);
-    let square = b.square(mean);
-    let share = b.div(square, energy);
-    let local = b.mul(expected, share);
-    b.add(kept, local)
+    let ([w11, w12, w22], [s11, s12, s22]) = (w.0, s.0);
+    let xx = dot([w11, w12], [s11, s12]);
+    let xy = dot([w11, w12], [s12, s22]);
+    let yx = dot([w12, w22], [s11, s12]);
+    let yy = dot([w12, w22], [s12, s22]);
+    let cross = xy * yx;
+    let norm = xx * xx + yy * yy + (cross + cross);
+
+    let energy = energy.max(1e-6);
+    let expected = (norm * 0.5 / energy).min(rest);
+    (rest - expected) + expected * (mean.square() / energy)
 }

@@ -4,16 +4,16 @@ use std::sync::{Arc, LazyLock};
 
 use crate::noise::source::SEED;
 use crate::picture::example::{Example, Gaussianised, deviation};
-use crate::picture::footprint::{Footprint, Part, Parts};
-use crate::picture::gather::{Place, gather};
+use crate::picture::footprint::Parts;
+use crate::picture::gather::Reading;
 use crate::picture::port::{
-    COLORSPACE, FILE, UVOFFSET, UVTILING, linearises, planes, position, split,
+    COLORSPACE, FILE, TEXCOORD, UVOFFSET, UVTILING, linearises, planes, position, split,
 };
 use crate::picture::pyramid::{Address, Layout, bake};
 use crate::picture::read::{Pyramid, Tap};
 use crate::picture::tiling::{Tile, Tiling};
-use mipless_codegen::ir::{Builder, FunctionRef, Numbers};
-use mipless_codegen::moments::{Mode, Signal};
+use mipless_codegen::ir::{Float, Vec2};
+use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -65,7 +65,7 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         FILE,
-        crate::picture::port::TEXCOORD,
+        TEXCOORD,
         UVTILING,
         UVOFFSET,
         PortSpec::new(
@@ -138,11 +138,10 @@ const PARTS: Parts = Parts {
 /// none beyond 5.1, and tiles at their weights' largest sum are rarer still.
 const DOMAIN: [f32; 2] = [-5.0, 5.0];
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let channels = node.ty.components();
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let (b, channels) = (lower.b(), node.ty.components());
     let Some(picture) = lower.picture(node, "file") else {
-        let b = lower.b();
-        return (0..channels).map(|_| Signal::constant(b, 0.0)).collect();
+        return vec![Signal::constant(b, 0.0); channels];
     };
     let (colors, key) = planes(lower, node, &picture, node.ty);
     let example = lower.once(&format!("example {key}"), || Example::new(&colors));
@@ -150,7 +149,7 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     let gaussian = Arc::new(LazyLock::new(move || of_example.gaussian()));
     let fields = blended(lower, node, &example, &gaussian, &key);
     // Back to the coordinates along each axis, then to colours.
-    let along: Vec<Signal> = (fields.iter().enumerate())
+    let along: Vec<Signal<'b>> = (fields.iter().enumerate())
         .map(|(axis, field)| {
             let ranks = Arc::clone(&gaussian);
             let range = example.range(axis).map(|x| x as f32);
@@ -163,163 +162,88 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
             lower.algebra.transfer(field, &inverse)
         })
         .collect();
-    let b = lower.b();
     (0..channels)
         .map(|channel| {
-            let mut color = Signal::constant(b, example.mean[channel] as f32);
-            for (axis, signal) in example.axes.iter().zip(&along) {
-                let factor = b.f32(axis[channel] as f32);
-                let part = signal.scale(b, factor);
-                color = color.add(b, &part);
-            }
-            color
+            let mean = Signal::constant(b, example.mean[channel] as f32);
+            let axes = example.axes.iter().zip(&along);
+            axes.fold(mean, |color, (axis, signal)| {
+                color + signal * axis[channel] as f32
+            })
         })
         .collect()
 }
 
 /// The blended Gaussian channels.
-fn blended(
-    lower: &mut Lower<'_>,
+fn blended<'b>(
+    lower: &mut Lower<'_, 'b>,
     node: &Node,
     example: &Example,
     gaussian: &Arc<LazyLock<Gaussianised, impl FnOnce() -> Gaussianised + Send + Sync + 'static>>,
     key: &str,
-) -> Vec<Signal> {
+) -> Bundle<'b> {
+    let filters = lower.mode().filters();
     let channels = node.ty.components();
-    let mode = lower.mode();
-    let size = example.size();
-    let texels = size.map(|n| n as f32);
-    let layout = Layout::new(size, channels, [Address::Periodic; 2], mode.filters());
-    let (table, ranks) = (layout.clone(), Arc::clone(gaussian));
-    let baked = Arc::new(LazyLock::new(move || bake(&table, &ranks.planes)));
-    let (length, numbers) = (layout.len(), Arc::clone(&baked));
-    let key = format!("byexample {key} {}", mode.filters());
+    let layout = Layout::new(example.size(), channels, [Address::Periodic; 2], filters);
+    let key = format!("byexample {key} {filters}");
     let name = format!("{}_pyramid", node.name);
-    let pyramid = Pyramid::new(lower, &key, &name, layout, || {
-        Numbers::lazy(length, move || numbers.0.clone())
-    });
+    let ranks = Arc::clone(gaussian);
+    let bake = move |layout: &Layout| bake(layout, &ranks.planes);
+    let pyramid = Pyramid::new(lower, &key, &name, layout, bake);
     let period = node.literal("period").numbers();
     let tiling = Tiling {
         period: [period[0].round(), period[1].round()],
         seed: lower.integer(node, "seed"),
     };
-    let key = format!("{key} {tiling:?}");
 
     let position = position(lower, node);
-    let b = lower.b();
-    let starts = [0, 1].map(|axis| split(b, &position[axis]));
-    let place = vec![starts[0].0, starts[0].1, starts[1].0, starts[1].1];
-    if !mode.filters() {
-        let point = pyramid.point(lower);
-        let b = lower.b();
-        let zero = b.f32(0.0);
-        let tiles = tiling.tiles(b, &place, [zero; 2]);
-        let mut means = vec![zero; channels];
-        for tile in &tiles {
-            let values = b.call(&point, &tile.place);
-            for (mean, value) in means.iter_mut().zip(values) {
-                let part = b.mul(tile.weight, value);
-                *mean = b.add(*mean, part);
-            }
-        }
-        return means.iter().map(|&mean| Signal::certain(b, mean)).collect();
+    let place = [0, 1].map(|axis| split(&position[axis]));
+    let reading = Reading::new(lower, &pyramid, &position, PARTS, place);
+    if let Some(longest) = reading.longest() {
+        let wavelength = example.wavelength().min(1e6) as f32;
+        lower.source_footprint(longest * (1.0 / wavelength));
     }
-    let filter = lower.filter();
-    let (footprint, pixel) = Footprint::of(lower.b(), &position, texels, filter, PARTS);
-    let carries = matches!(mode, Mode::Local | Mode::Quad);
-    let filtered = pyramid.filtered(lower, carries);
-    let place = Place {
-        footprint: &footprint,
-        pixel: Some(pixel),
-        more: place,
-    };
-    let gathered = gather(
-        lower,
-        &key,
-        (channels, carries),
-        &place,
-        |b, part, place| {
-            let tiles = tiling.tiles(b, place, part.offset);
-            blend(b, &tiles, part, &filtered, (channels, texels, carries))
-        },
-    );
-    let [xx, xy, yy] = footprint.covariance;
-    let b = lower.b();
-    let sum = b.add(xx, yy);
-    let variance = b.scale(sum, 0.5);
-    // The longest side of the footprint, in wavelengths.
-    let (tilt, zero) = (b.sub(xx, yy), b.f32(0.0));
-    let tilt = b.scale(tilt, 0.5);
-    let root = b.dot(&[tilt, xy], &[tilt, xy]);
-    let root = b.sqrt(root);
-    let most = b.add(variance, root);
-    let most = b.max(most, zero);
-    let size = b.sqrt(most);
-    let wavelength = example.wavelength().min(1e6) as f32;
-    let size = b.scale(size, 1.0 / wavelength);
-    lower.source_footprint(size);
-    if carries {
-        return gathered.signals(lower, &position, texels, &footprint);
-    }
-    let b = lower.b();
-    let mut signals: Vec<Signal> = (gathered.mean.iter())
-        .map(|&mean| Signal::certain(b, mean))
-        .collect();
-    if mode == Mode::Ensemble {
-        let removed = pyramid.removed(lower, variance, move |length| {
-            let rows = move || baked.1.iter().flatten().map(|&x| x as f32).collect();
-            Numbers::lazy(length, rows)
-        });
-        lower.algebra.attach_joint(&mut signals, &removed);
-    }
-    signals
+    let texels = pyramid.texels();
+    reading.signals(lower, &format!("{key} {tiling:?}"), |part, place, read| {
+        let place = [0, 2].map(|i| (place[i].int(), place[i + 1].float()));
+        let tiles = tiling.tiles(place, part.offset);
+        blend(
+            tiles.map(|tile| (tile, read(tile.place))),
+            part.variance,
+            texels,
+        )
+    })
 }
 
-/// The blend of the tiles over a part of the footprint.
-fn blend(
-    b: &mut Builder,
-    tiles: &[Tile; 3],
-    part: &Part,
-    filtered: &FunctionRef,
-    (channels, texels, carries): (usize, [f32; 2], bool),
-) -> Tap {
-    let zero = b.f32(0.0);
-    let v = part.variance;
-    let mut out = Tap {
-        mean: vec![zero; channels],
-        gradient: vec![[zero; 2]; if carries { channels } else { 0 }],
-        rest: Vec::new(),
-    };
-    for tile in tiles {
-        let [x, y] = tile.place;
-        let numbers = b.call(filtered, &[x, y, v]);
-        let tap = Tap::of(&numbers, channels);
-        let slope = [0, 1].map(|axis| b.scale(tile.slope[axis], 1.0 / texels[axis]));
-        for (channel, &mean) in tap.mean.iter().enumerate() {
-            let own = b.mul(tile.weight, mean);
-            out.mean[channel] = b.add(out.mean[channel], own);
-            let Some(gradient) = tap.gradient.get(channel) else {
-                continue;
-            };
+/// The blend of three tiles and what they read, over a part of the footprint of this variance.
+fn blend<'b>(tiles: [(Tile<'b>, Tap<'b>); 3], variance: Float<'b>, texels: [f32; 2]) -> Tap<'b> {
+    let slopes = tiles
+        .each_ref()
+        .map(|(tile, _)| Vec2([0, 1].map(|axis| tile.slope[axis] * (1.0 / texels[axis]))));
+    let (zero, of) = (variance.literal(0.0), &tiles[0].1);
+    let tiles = || tiles.iter().zip(slopes);
+    let mean = (0..of.mean.len()).map(|i| {
+        tiles().fold(zero, |sum, ((tile, tap), slope)| {
+            let sum = sum + tile.weight * tap.mean[i];
             // The weight and the tile vary together.
-            let joint = b.dot(&slope, gradient);
-            let joint = b.mul(joint, v);
-            out.mean[channel] = b.add(out.mean[channel], joint);
-            for axis in [0, 1] {
-                let of_tile = b.mul(tile.weight, gradient[axis]);
-                let of_weight = b.mul(slope[axis], mean);
-                let sum = b.add(of_tile, of_weight);
-                out.gradient[channel][axis] = b.add(out.gradient[channel][axis], sum);
-            }
-        }
-        let square = b.square(tile.weight);
-        for (entry, &rest) in tap.rest.iter().enumerate() {
-            let own = b.mul(square, rest);
-            match out.rest.get_mut(entry) {
-                Some(sum) => *sum = b.add(*sum, own),
-                None => out.rest.push(own),
-            }
-        }
+            let joint = |&gradient: &Vec2<'b>| slope.dot(gradient) * variance;
+            tap.gradient
+                .get(i)
+                .map(joint)
+                .map_or(sum, |joint| sum + joint)
+        })
+    });
+    let gradient = (0..of.gradient.len()).map(|i| {
+        tiles().fold(Vec2::splat(zero), |sum, ((tile, tap), slope)| {
+            sum + (tap.gradient[i] * tile.weight + slope * tap.mean[i])
+        })
+    });
+    let rest = (0..of.rest.len()).map(|entry| {
+        let parts = tiles().map(|((tile, tap), _)| tile.weight.square() * tap.rest[entry]);
+        zero.builder().sum(parts)
+    });
+    Tap {
+        mean: mean.collect(),
+        gradient: gradient.collect(),
+        rest: rest.collect(),
     }
-    out
 }

@@ -6,14 +6,17 @@
 //! shear is not normal.
 
 pub(crate) mod line;
+pub(crate) mod passed;
+pub(crate) mod place;
 pub(crate) mod space;
 
 use super::field::{Field, Spread};
 use super::period::wrapped;
 use line::Sums;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Normal, Signal};
+use passed::{Passed, passed};
 
 /// The variance of a number of [0, 1).
 pub(crate) const VARIANCE: f32 = 1.0 / 12.0;
@@ -24,214 +27,152 @@ const REACH: f32 = 2.8;
 /// The most rows or columns of a window; footprints that need more fade.
 const MOST: f32 = 24.0;
 
-/// The number of a cell, in [0, 1), and its hash.
-pub(crate) fn number(
-    b: &mut Builder,
-    column: Value,
-    row: Value,
-    seed: Value,
-    period: i32,
-) -> (Value, Value) {
-    let column = wrapped(b, column, period);
-    let row = wrapped(b, row, period);
-    let (column, row) = (b.cast_u(column), b.cast_u(row));
-    let factor = b.u32(0x9e37_79b1);
-    let row = b.mul_u(row, factor);
-    let row = b.add_u(row, seed);
-    let hash = b.xor_u(column, row);
-    let hash = b.scramble(hash);
-    let by = b.u32(8);
-    let leading = b.shr_u(hash, by);
-    let number = b.float_u(leading);
-    (b.scale(number, 1.0 / (1u32 << 24) as f32), hash)
+/// No footprint is narrower, in squared cells.
+const NARROWEST: f32 = 1e-12;
+
+/// What the hashes of a row's cells share.
+pub(crate) fn row_word<'b>(row: Int<'b>, seed: Uint<'b>, period: i32) -> Uint<'b> {
+    wrapped(row, period).to_uint() * 0x9e37_79b1 + seed
+}
+
+/// The hash of a cell, given its row's word.
+pub(crate) fn hash<'b>(column: Int<'b>, row: Uint<'b>, period: i32) -> Uint<'b> {
+    (wrapped(column, period).to_uint() ^ row).scramble()
+}
+
+/// The number of [0, 1) in the leading bits of a hash.
+pub(crate) fn uniform(hash: Uint<'_>) -> Float<'_> {
+    (hash >> 8).to_float() * (1.0 / (1u32 << 24) as f32)
+}
+
+/// The number of a cell, in [0, 1).
+pub(crate) fn number<'b>([column, row]: [Int<'b>; 2], seed: Uint<'b>, period: i32) -> Float<'b> {
+    uniform(hash(column, row_word(row, seed, period), period))
 }
 
 /// The scrambled seed of a lattice; `salt` separates kinds of noise.
-pub(crate) fn lattice_seed(b: &mut Builder, seed: i32, salt: u32) -> Value {
-    let seed = b.u32(seed as u32 ^ salt);
-    b.scramble(seed)
+pub(crate) fn lattice_seed(b: &Builder, seed: i32, salt: u32) -> Uint<'_> {
+    b.uint(seed as u32 ^ salt).scramble()
 }
 
-/// The cell and the fraction of a coordinate.
-pub(crate) fn split(b: &mut Builder, axis: &Signal) -> [Value; 2] {
-    match axis.cell {
-        Some(cell) => [cell, axis.mean],
-        None => {
-            let whole = b.floor(axis.mean);
-            let fraction = b.sub(axis.mean, whole);
-            [b.trunc_i(whole), fraction]
-        }
-    }
-}
-
-/// The same of all coordinates, in order.
-fn places(b: &mut Builder, position: &[Signal]) -> Vec<Value> {
-    position.iter().flat_map(|axis| split(b, axis)).collect()
+/// The standard deviation of a variance, and its inverse.
+pub(crate) fn deviation(variance: Float<'_>) -> [Float<'_>; 2] {
+    let sd = (variance + NARROWEST).sqrt();
+    [sd, 1.0 / sd]
 }
 
 /// Reports a footprint of this standard deviation, in cells.
-fn report(lower: &mut Lower<'_>, sd: Value) {
+fn report<'b>(lower: &mut Lower<'_, 'b>, sd: Float<'b>) {
     // The spectrum of a box has half its energy below a third of a cycle per cell.
-    let size = lower.b().scale(sd, 1.0 / 3.0);
-    lower.source_footprint(size);
+    lower.source_footprint(sd * (1.0 / 3.0));
 }
 
 /// The probability that two independent places of a Gaussian spread along one axis lie in one cell:
 /// E[max(1 − |t|, 0)] of their difference t, of standard deviation τ = σ√2.
-pub(crate) fn coincidence(b: &mut Builder, variance: Value) -> Value {
-    let twice = b.add(variance, variance);
-    let raised = b.offset(twice, 1e-12);
-    let sd = b.sqrt(raised);
-    let one = b.f32(1.0);
-    let inverse = b.div(one, sd);
-    let n = Normal::at(b, one, inverse);
-    let inside = b.offset(n.below, -0.5);
-    let inside = b.add(inside, inside);
+pub(crate) fn coincidence(variance: Float<'_>) -> Float<'_> {
+    let [sd, inverse] = deviation(variance + variance);
+    let n = Normal::of(inverse);
+    let inside = n.below + -0.5;
     // 2τ(φ(0) − φ(1/τ)).
-    let density = b.neg(n.density);
-    let density = b.offset(density, 0.398_942_3);
-    let lost = b.mul(density, sd);
-    let lost = b.add(lost, lost);
-    let share = b.sub(inside, lost);
-    b.clamp(share, 0.0, 1.0)
+    let lost = (0.398_942_3 - n.density) * sd;
+    ((inside + inside) - (lost + lost)).clamp(0.0, 1.0)
 }
 
 /// The filtered cells at a position; the mean lies around ½.
-pub(crate) fn filtered(
-    lower: &mut Lower<'_>,
-    position: &[Signal],
+pub(crate) fn filtered<'b>(
+    lower: &mut Lower<'_, 'b>,
+    position: &[Signal<'b>],
     seed: i32,
     period: i32,
-) -> Field {
+) -> Field<'b> {
     let mode = lower.mode();
-    let spread = Spread::of(lower.b(), position);
-    let size = lower.b().sqrt(spread.eigenvalues[0]);
-    report(lower, size);
+    let spread = Spread::of(position);
+    report(lower, spread.eigenvalues[0].sqrt());
     let key = format!("cells {mode:?} {seed} {period}");
     let function = lower.function(&key, |module| build(module, mode, seed, period));
-    let b = lower.b();
-    let mut arguments = places(b, position);
-    if mode.filters() {
-        arguments.extend(spread.covariance);
-        arguments.extend(spread.eigenvalues);
-    }
-    let results = b.call(&function, &arguments);
-    let zero = b.f32(0.0);
-    let at = |i: usize| results.get(i).copied().unwrap_or(zero);
-    Field {
-        mean: at(0),
-        gradient: [at(1), at(2)],
-        hessian: [zero; 3],
-        rest: at(3),
-    }
+    let results = place::called(lower, &function, (position, &spread), ());
+    place::field(&results[..results.len().min(3)], results.get(3).copied())
 }
 
-/// The window of a standard deviation.
-fn window(b: &mut Builder, mean: Value, sd: Value) -> [Value; 2] {
-    let reach = b.scale(sd, REACH);
-    around(b, mean, reach)
+/// The window of a standard deviation: where it starts, and how many cells it has.
+fn window<'b>(mean: Float<'b>, sd: Float<'b>) -> [Float<'b>; 2] {
+    around(mean, sd * REACH)
 }
 
 /// A window over `count` = ⌈2r⌉ + 1 cells that starts at ⌊m − r⌋.
-fn around(b: &mut Builder, mean: Value, reach: Value) -> [Value; 2] {
-    let start = b.sub(mean, reach);
-    let start = b.floor(start);
-    let minus = b.scale(reach, -2.0);
-    let floor = b.floor(minus);
-    let count = b.neg(floor);
-    let count = b.offset(count, 1.0);
-    [start, b.clamp(count, 1.0, MOST)]
+fn around<'b>(mean: Float<'b>, reach: Float<'b>) -> [Float<'b>; 2] {
+    let count = 1.0 - (reach * -2.0).floor();
+    [(mean - reach).floor(), count.clamp(1.0, MOST)]
 }
 
 /// 1, falling to 0 as a footprint of this standard deviation fills the largest window.
-fn fading(b: &mut Builder, sd: Value) -> Value {
-    let largest = (MOST - 1.0) / (2.0 * REACH);
-    let fade = b.scale(sd, -4.0 / largest);
-    let fade = b.offset(fade, 4.0);
-    b.clamp(fade, 0.0, 1.0)
+fn fading(sd: Float<'_>) -> Float<'_> {
+    const LARGEST: f32 = (MOST - 1.0) / (2.0 * REACH);
+    (sd * (-4.0 / LARGEST) + 4.0).clamp(0.0, 1.0)
 }
 
-/// How many cells a window has, or none of what has faded, as u32.
-fn counted(b: &mut Builder, cells: Value, fade: Value) -> Value {
-    let (zero, none) = (b.f32(0.0), b.u32(0));
-    let gone = b.le(fade, zero);
-    let count = b.trunc_i(cells);
-    let count = b.cast_u(count);
-    b.select(gone, none, count)
+/// How many cells a window has, or none of what has faded.
+fn counted<'b>(cells: Float<'b>, fade: Float<'b>) -> Uint<'b> {
+    fade.le(0.0).select(0u32, cells.to_int().to_uint())
+}
+
+passed! {
+    /// What the cells of a row have in common: where its window starts, the Gaussian in it, and the
+    /// number at the centre.
+    struct Row {
+        start: Float,
+        mean: Float,
+        inverse_sd: Float,
+        centre: Float,
+        cell_x: Int,
+        row: Int,
+        seed: Uint,
+    }
 }
 
 /// The cells of one row, the body of a fold over columns.
 fn column(module: &mut Module, period: i32) -> FunctionRef {
-    let sums = Sums::of(1);
-    let mut b = Builder::new("cell_column", "One cell of a row.");
-    let index = b.param("index", Type::U32);
-    let names = sums.names();
-    let state: Vec<Value> = names.iter().map(|name| b.param_f32(name)).collect();
-    let start = b.param_f32("start");
-    let (mean, inverse) = (b.param_f32("mean"), b.param_f32("inverse_sd"));
-    let centre = b.param_f32("centre");
-    let cell = b.param("cell_x", Type::I32);
-    let row = b.param("row", Type::I32);
-    let seed = b.param("seed", Type::U32);
-    let offset = b.float_u(index);
-    let place = b.add(start, offset);
-    let edge = b.offset(place, 1.0);
-    let distance = b.sub(edge, mean);
-    let whole = b.trunc_i(place);
-    let column = b.add_i(cell, whole);
-    let (value, _) = number(&mut b, column, row, seed, period);
-    let d = b.sub(value, centre);
-    let next = sums.after(&mut b, &state, [distance, inverse], &[d]);
-    for (name, value) in names.into_iter().zip(next) {
-        b.result(name, value);
-    }
+    let b = &Builder::new("cell_column", "One cell of a row.");
+    let index = b.uint_param("index");
+    let sums = Sums::declare(b, 1);
+    let row = Row::declare(b);
+    let place = row.start + index.to_float();
+    let number = number([row.cell_x + place.to_int(), row.row], row.seed, period);
+    let edge = [place + 1.0 - row.mean, row.inverse_sd];
+    sums.after(edge, &[number - row.centre]).results(b);
     b.finish(module)
 }
 
 /// A row of cells, or a layer of rows, under a Gaussian.
-struct Slice {
+struct Slice<'b> {
     /// Its probability.
-    weight: Value,
+    weight: Float<'b>,
     /// From the mean to the mean given the slice.
-    moved: Value,
+    moved: Float<'b>,
     /// The variance given the slice, and its share of the whole.
-    within: Value,
-    share: Value,
+    within: Float<'b>,
+    share: Float<'b>,
     /// φ at the lower edge less φ at the upper one.
-    fall: Value,
+    fall: Float<'b>,
 }
 
-impl Slice {
+impl<'b> Slice<'b> {
     /// Of the cells whose lower edge is at a distance from the mean: a truncated normal.
-    fn of(b: &mut Builder, low: Value, [sd, inverse]: [Value; 2]) -> Self {
-        let (zero, high) = (b.f32(0.0), b.offset(low, 1.0));
-        let (n0, n1) = (Normal::at(b, low, inverse), Normal::at(b, high, inverse));
-        let weight = b.sub(n1.below, n0.below);
-        let weight = b.max(weight, zero);
-        let tiny = b.f32(1e-6);
-        let guarded = b.max(weight, tiny);
-        let fall = b.sub(n0.density, n1.density);
-        let lean = b.div(fall, guarded);
-        let moved = b.mul(lean, sd);
-        let moved = b.max(moved, low);
-        let moved = b.min(moved, high);
-        let (left, right) = (b.mul(n0.z, n0.density), b.mul(n1.z, n1.density));
-        let change = b.sub(left, right);
-        let change = b.div(change, guarded);
-        let square = b.square(lean);
-        let share = b.sub(change, square);
-        let share = b.offset(share, 1.0);
-        let share = b.clamp(share, 0.0, 1.0);
-        let v = b.square(sd);
-        let within = b.mul(share, v);
-        let widest = b.f32(VARIANCE);
-        let within = b.min(within, widest);
-        let share = b.square(inverse);
+    fn of(low: Float<'b>, [sd, inverse]: [Float<'b>; 2]) -> Self {
+        let high = low + 1.0;
+        let [n0, n1] = [low, high].map(|edge| Normal::at(edge, inverse));
+        let weight = (n1.below - n0.below).max(0.0);
+        let guarded = weight.max(1e-6);
+        let fall = n0.density - n1.density;
+        let lean = fall / guarded;
+        let change = (n0.z * n0.density - n1.z * n1.density) / guarded;
+        let left = (change - lean.square() + 1.0).clamp(0.0, 1.0);
+        let within = (left * sd.square()).min(VARIANCE);
         Self {
             weight,
-            moved,
+            moved: (lean * sd).clamp(low, high),
             within,
-            share: b.mul(within, share),
+            share: within * inverse.square(),
             fall,
         }
     }
@@ -239,182 +180,174 @@ impl Slice {
     /// The derivative by the mean of a sum over the slice, of which the mean given the slice and the
     /// derivative by what the slice shifts, times by how much, are known: of the weight, and of the
     /// shift, which lags behind by dμ/dm − 1 with dμ/dm = var/σ².
-    fn slope(&self, b: &mut Builder, inverse: Value, first: Value, shifted: Value) -> Value {
-        let gain = b.mul(self.fall, inverse);
-        let direct = b.mul(gain, first);
-        let lag = b.offset(self.share, -1.0);
-        let lag = b.mul(lag, self.weight);
-        let indirect = b.mul(lag, shifted);
-        b.add(direct, indirect)
+    fn slope(&self, inverse: Float<'b>, first: Float<'b>, shifted: Float<'b>) -> Float<'b> {
+        self.fall * inverse * first + (self.share + -1.0) * self.weight * shifted
     }
 }
 
-/// One row of cells, the body of a fold: sums of the weight, of d, of d², and of both slopes.
+passed! {
+    /// What the rows of a plane have in common: where their window starts, the place, the number at the
+    /// centre, the Gaussian along y, and what x has by it and beyond it.
+    struct Rows {
+        start: Float,
+        x: Float,
+        y: Float,
+        centre: Float,
+        cell_x: Int,
+        cell_y: Int,
+        seed: Uint,
+        sd_y: Float,
+        inverse_sd_y: Float,
+        shear: Float,
+        variance_across: Float,
+    }
+}
+
+passed! {
+    /// Sums over the rows of a plane: of the weight, of d, of d², and of both slopes of d.
+    struct RowSums {
+        weight: Float,
+        first: Float,
+        second: Float,
+        slope_x: Float,
+        slope_y: Float,
+    }
+}
+
+/// One row of cells, the body of a fold.
 fn row(module: &mut Module, period: i32) -> FunctionRef {
     let column = column(module, period);
-    let mut b = Builder::new("cell_row", "One row of cells.");
-    let index = b.param("index", Type::U32);
-    let names = ["weight", "first", "second", "slope_x", "slope_y"];
-    let state = names.map(|name| b.param_f32(name));
-    let start = b.param_f32("start");
-    let (x, y) = (b.param_f32("x"), b.param_f32("y"));
-    let centre = b.param_f32("centre");
-    let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
-    let seed = b.param("seed", Type::U32);
-    let (sd, inverse) = (b.param_f32("sd_y"), b.param_f32("inverse_sd_y"));
-    let (shear, across) = (b.param_f32("shear"), b.param_f32("variance_across"));
-    let one = b.f32(1.0);
-    let offset = b.float_u(index);
-    let place = b.add(start, offset);
-    let low = b.sub(place, y);
-    let slice = Slice::of(&mut b, low, [sd, inverse]);
+    let b = &Builder::new("cell_row", "One row of cells.");
+    let index = b.uint_param("index");
+    let sums = RowSums::declare(b);
+    let rows = Rows::declare(b);
+    let place = rows.start + index.to_float();
+    let slice = Slice::of(place - rows.y, [rows.sd_y, rows.inverse_sd_y]);
+
     // x given the row.
-    let shift = b.mul(shear, slice.moved);
-    let mean = b.add(x, shift);
-    let square = b.square(shear);
-    let spread = b.mul(square, slice.within);
-    let variance = b.add(across, spread);
-    let raised = b.offset(variance, 1e-12);
-    let sd_x = b.sqrt(raised);
-    let inverse_x = b.div(one, sd_x);
+    let mean = rows.x + rows.shear * slice.moved;
+    let variance = rows.variance_across + rows.shear.square() * slice.within;
+    let [sd, inverse_sd] = deviation(variance);
+
     // The cells that count lie within an ellipse.
-    let aside = b.mul(slice.moved, inverse);
-    let aside = b.square(aside);
-    let aside = b.scale(aside, -1.0 / (REACH * REACH));
-    let left = b.add(one, aside);
-    let zero = b.f32(0.0);
-    let left = b.max(left, zero);
-    let left = b.sqrt(left);
-    let reach = b.scale(sd_x, REACH);
-    let reach = b.mul(reach, left);
-    let [first, count] = around(&mut b, mean, reach);
-    let distance = b.sub(first, mean);
-    let init = Sums::of(1).start(&mut b, distance, inverse_x);
-    let whole = b.trunc_i(place);
-    let row = b.add_i(cells[1], whole);
-    let count = b.trunc_i(count);
-    let count = b.cast_u(count);
-    let captures = [first, mean, inverse_x, centre, cells[0], row, seed];
-    let sums = b.fold(&column, count, &init, &captures);
-    let tiny = b.f32(1e-6);
-    let total = b.max(sums[2], tiny);
-    let scale = b.div(one, total);
-    let (m1, m2) = (b.mul(sums[3], scale), b.mul(sums[4], scale));
-    let slope = b.mul(sums[5], scale);
-    let slope = b.mul(slope, inverse_x);
-    let shifted = b.mul(shear, slope);
-    let parts = [
-        slice.weight,
-        b.mul(slice.weight, m1),
-        b.mul(slice.weight, m2),
-        b.mul(slice.weight, slope),
-        slice.slope(&mut b, inverse, m1, shifted),
-    ];
-    for ((name, sum), part) in names.into_iter().zip(state).zip(parts) {
-        let sum = b.add(sum, part);
-        b.result(name, sum);
+    let aside = (slice.moved * rows.inverse_sd_y).square();
+    let left = (aside * (-1.0 / (REACH * REACH)) + 1.0).max(0.0).sqrt();
+    let [start, count] = around(mean, sd * REACH * left);
+    let cells = Row {
+        start,
+        mean,
+        inverse_sd,
+        centre: rows.centre,
+        cell_x: rows.cell_x,
+        row: rows.cell_y + place.to_int(),
+        seed: rows.seed,
+    };
+    let before = Sums::start([start - mean, inverse_sd], 1);
+    let of_row = b.fold(&column, count.to_int().to_uint(), before, cells);
+    let [first, second, slope] = of_row.averages().map(|of| of[0]);
+    let slope = slope * inverse_sd;
+    RowSums {
+        weight: sums.weight + slice.weight,
+        first: sums.first + slice.weight * first,
+        second: sums.second + slice.weight * second,
+        slope_x: sums.slope_x + slice.weight * slope,
+        slope_y: sums.slope_y + slice.slope(rows.inverse_sd_y, first, rows.shear * slope),
     }
+    .results(b);
     b.finish(module)
+}
+
+/// The cells around a place of a plane.
+struct Cells<'b> {
+    /// The number at the centre.
+    centre: Float<'b>,
+    /// Where the place is counted from.
+    origin: [Int<'b>; 2],
+    seed: Uint<'b>,
+    /// How much has not faded.
+    fade: Float<'b>,
 }
 
 /// Sums over the cells of a plane, relative to the number at the centre: means of d and of d², and
 /// the slopes of the mean of d.
-struct Plane {
-    first: Value,
-    second: Value,
-    slopes: [Value; 2],
+struct Plane<'b> {
+    first: Float<'b>,
+    second: Float<'b>,
+    slopes: Vec2<'b>,
 }
 
-impl Plane {
-    /// Of a Gaussian at a place, from the cells there: its Σ₁₁, Σ₁₂, Σ₂₂ and det Σ, none of which is
-    /// a difference.
+impl<'b> Plane<'b> {
+    /// Of a Gaussian at a place, from the cells there: its Σ and det Σ, none of which is a difference.
     fn of(
-        b: &mut Builder,
         row: &FunctionRef,
-        [x, y]: [Value; 2],
-        [s_xx, s_xy, s_yy, determinant]: [Value; 4],
-        [centre, cell_x, cell_y, seed, fade]: [Value; 5],
+        [x, y]: [Float<'b>; 2],
+        (Sym2([s_xx, s_xy, s_yy]), determinant): (Sym2<'b>, Float<'b>),
+        cells: &Cells<'b>,
     ) -> Self {
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        let raised = b.offset(s_yy, 1e-12);
-        let sd = b.sqrt(raised);
-        let inverse = b.div(one, sd);
-        let shear = b.div(s_xy, raised);
-        // What x has beyond y: det Σ/Σ₂₂, of what is raised.
-        let own = b.scale(s_xx, 1e-12);
-        let determinant = b.add(determinant, own);
-        let across = b.div(determinant, raised);
-        let across = b.min(across, s_xx);
-        let [start, rows] = window(b, y, sd);
-        let count = counted(b, rows, fade);
-        let captures = [
-            start, x, y, centre, cell_x, cell_y, seed, sd, inverse, shear, across,
-        ];
-        let sums = b.fold(row, count, &[zero; 5], &captures);
-        let tiny = b.f32(1e-6);
-        let total = b.max(sums[0], tiny);
-        let scale = b.div(one, total);
-        let [first, second, slope_x, slope_y] = [1, 2, 3, 4].map(|i| b.mul(sums[i], scale));
+        let b = x.builder();
+        let raised = s_yy + NARROWEST;
+        let [sd_y, inverse_sd_y] = deviation(s_yy);
+        let [start, count] = window(y, sd_y);
+        let rows = Rows {
+            start,
+            x,
+            y,
+            centre: cells.centre,
+            cell_x: cells.origin[0],
+            cell_y: cells.origin[1],
+            seed: cells.seed,
+            sd_y,
+            inverse_sd_y,
+            shear: s_xy / raised,
+            // det Σ/Σ₂₂, of what is raised.
+            variance_across: ((determinant + s_xx * NARROWEST) / raised).min(s_xx),
+        };
+        let sums = b.fold(row, counted(count, cells.fade), RowSums::zero(b), rows);
+        let scale = 1.0 / sums.weight.max(1e-6);
         Self {
-            first,
-            second,
-            slopes: [slope_x, slope_y],
+            first: sums.first * scale,
+            second: sums.second * scale,
+            slopes: Vec2([sums.slope_x, sums.slope_y]) * scale,
         }
     }
 }
 
 /// What the cells of a footprint have in common, by their numbers less the centre's.
-struct Filtered<'a> {
-    centre: Value,
+struct Filtered<'a, 'b> {
+    centre: Float<'b>,
     /// The means of d and of d².
-    first: Value,
-    second: Value,
+    first: Float<'b>,
+    second: Float<'b>,
     /// The derivatives of the mean.
-    slopes: &'a [Value],
+    slopes: &'a [Float<'b>],
     /// The variance that they give.
-    linear: Value,
+    linear: Float<'b>,
     /// How much of it has not faded.
-    fade: Value,
+    fade: Float<'b>,
     /// The probability that two places of the footprint lie in one cell.
-    same: Value,
+    same: Float<'b>,
 }
 
-impl Filtered<'_> {
+impl<'b> Filtered<'_, 'b> {
     /// The results of a function: the mean, the slopes and what is left of the variance.
-    fn results(&self, b: &mut Builder, mode: Mode) {
+    fn results(&self, b: &'b Builder, mode: Mode) {
         let &Self { first, fade, .. } = self;
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
         // M = ½ + fade (v₀ + m₁ − ½).
-        let mean = b.add(self.centre, first);
-        let mean = b.offset(mean, -0.5);
-        let mean = b.mul(mean, fade);
-        let mean = b.offset(mean, 0.5);
-        let mean = b.clamp(mean, 0.0, 1.0);
-        b.result("mean", mean);
+        let mean = (self.centre + first + -0.5) * fade + 0.5;
+        b.result("mean", mean.clamp(0.0, 1.0));
         let carries = matches!(mode, Mode::Local | Mode::Quad);
         for (name, &slope) in ["dx", "dy", "dz"].into_iter().zip(self.slopes) {
-            let slope = b.mul(slope, fade);
-            b.result(name, if carries { slope } else { zero });
+            b.result(name, if carries { slope * fade } else { b.float(0.0) });
         }
         if !mode.spreads() {
             return;
         }
-        let whole = b.f32(VARIANCE);
         let rest = if carries {
-            let square = b.square(first);
-            let variance = b.sub(self.second, square);
-            let share = b.square(fade);
-            let linear = b.mul(self.linear, share);
-            let rest = b.sub(variance, linear);
-            let rest = b.max(rest, zero);
-            let near = b.mul(rest, fade);
-            let kept = b.sub(one, fade);
-            let far = b.mul(whole, kept);
-            b.add(near, far)
+            let variance = self.second - first.square();
+            let near = (variance - self.linear * fade.square()).max(0.0);
+            near * fade + (1.0 - fade) * VARIANCE
         } else {
-            let left = b.mul(self.same, fade);
-            let lost = b.sub(one, left);
-            b.mul(lost, whole)
+            (1.0 - self.same * fade) * VARIANCE
         };
         b.result("rest", rest);
     }
@@ -422,44 +355,41 @@ impl Filtered<'_> {
 
 fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef {
     let row = mode.filters().then(|| row(module, period));
-    let mut b = Builder::new("cells", "Filtered random cells.");
-    let cell_x = b.param("cell_x", Type::I32);
-    let x = b.param_f32("x");
-    let cell_y = b.param("cell_y", Type::I32);
-    let y = b.param_f32("y");
-    let seed = lattice_seed(&mut b, seed, 0xbb67_ae85);
-    let inner = [x, y].map(|x| b.floor(x));
-    let inner = inner.map(|x| b.trunc_i(x));
-    let (cx, cy) = (b.add_i(cell_x, inner[0]), b.add_i(cell_y, inner[1]));
-    let (centre, _) = number(&mut b, cx, cy, seed, period);
+    let b = &Builder::new("cells", "Filtered random cells.");
+    let (origin, at) = place::declared::<2>(b);
+    let seed = lattice_seed(b, seed, 0xbb67_ae85);
+    let inner = [0, 1].map(|axis| origin[axis] + at[axis].floor().to_int());
+    let centre = number(inner, seed, period);
     let Some(row) = row else {
         b.result("mean", centre);
         return b.finish(module);
     };
-    let [s_xx, s_xy, s_yy] = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
-    let eigenvalues = [b.param_f32("s_major"), b.param_f32("s_minor")];
-    let determinant = b.mul(eigenvalues[0], eigenvalues[1]);
+    let Spread {
+        covariance,
+        eigenvalues,
+    } = place::declared_spread(b);
+
     // Windows that would be too large fade.
-    let wide = b.max(s_xx, s_yy);
-    let wide = b.offset(wide, 1e-12);
-    let wide = b.sqrt(wide);
-    let fade = fading(&mut b, wide);
-    let covariance = [s_xx, s_xy, s_yy, determinant];
-    let from = [centre, cell_x, cell_y, seed, fade];
-    let plane = Plane::of(&mut b, &row, [x, y], covariance, from);
-    let slopes = plane.slopes;
-    let left = b.dot(&[s_xx, s_xy], &slopes);
-    let right = b.dot(&[s_xy, s_yy], &slopes);
-    let shares = eigenvalues.map(|v| coincidence(&mut b, v));
+    let widest = covariance[0].max(covariance[2]);
+    let [sd, _] = deviation(widest);
+    let cells = Cells {
+        centre,
+        origin,
+        seed,
+        fade: fading(sd),
+    };
+    let determinant = eigenvalues[0] * eigenvalues[1];
+    let plane = Plane::of(&row, at, (covariance, determinant), &cells);
+    let [along, across] = eigenvalues.map(coincidence);
     let filtered = Filtered {
         centre,
         first: plane.first,
         second: plane.second,
-        slopes: &slopes,
-        linear: b.dot(&slopes, &[left, right]),
-        fade,
-        same: b.mul(shares[0], shares[1]),
+        slopes: &*plane.slopes,
+        linear: plane.slopes.dot(covariance.times(plane.slopes)),
+        fade: cells.fade,
+        same: along * across,
     };
-    filtered.results(&mut b, mode);
+    filtered.results(b, mode);
     b.finish(module)
 }

@@ -52,7 +52,7 @@ pub(crate) const PERIOD: PortSpec = PortSpec::new(
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
     let seed = lower.integer(node, "seed");
     let period = lower.integer(node, "period");

@@ -1,6 +1,6 @@
 //! The field of a filtered source, and the signal that it is at a position with a spread.
 
-use mipless_codegen::ir::{Builder, SharedFunction, Value};
+use mipless_codegen::ir::{Float, SharedFunction, Sym2, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_codegen::{Lower, PartNames};
 
@@ -29,114 +29,102 @@ pub(crate) const Y: PartNames = [
 
 /// The covariance of a position within the footprint, in squared units of the position.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spread {
-    /// Σ₁₁, Σ₁₂, Σ₂₂.
-    pub(crate) covariance: [Value; 3],
+pub(crate) struct Spread<'b> {
+    /// Σ.
+    pub(crate) covariance: Sym2<'b>,
     /// The eigenvalues of Σ, the larger first, at least 0.
-    pub(crate) eigenvalues: [Value; 2],
+    pub(crate) eigenvalues: [Float<'b>; 2],
 }
 
 /// Positions spread over more than this are spread over it: every noise is gone long before.
 const WIDEST: f32 = 1.0e4;
 
-impl Spread {
+impl<'b> Spread<'b> {
     /// Of a position (x, y); zero where signals carry none.
-    pub(crate) fn of(b: &mut Builder, position: &[Signal]) -> Self {
+    pub(crate) fn of(position: &[Signal<'b>]) -> Self {
         let [x, y] = position else {
             panic!("a position has two coordinates")
         };
+        let b = x.mean.builder();
         let of = |variant| SharedFunction {
             name: "spread",
             variant,
             doc: "The covariance of a position, limited, and its eigenvalues.",
         };
         let [xx, xy, yy, major, minor] = if x.shared.is_empty() && y.shared.is_empty() {
-            let parts = |names: PartNames, signal: &Signal| {
-                let ([gx, gy], [hxx, hxy, hyy]) = (signal.g, signal.h);
+            let parts = |[_, _, names @ ..]: PartNames, signal: &Signal<'b>| {
+                let ([gx, gy], [hxx, hxy, hyy]) = (signal.g.0, signal.h.0);
                 let parts = [gx, gy, hxx, hxy, hyy, signal.private];
-                [2, 3, 4, 5, 6, 7].map(|i| (names[i], parts[i - 2]))
+                std::array::from_fn::<_, 6, _>(|i| (names[i], parts[i]))
             };
             let inputs = [parts(X, x), parts(Y, y)];
             b.shared(of(1), inputs.as_flattened(), |b, v| {
-                let zero = b.f32(0.0);
                 let [x, y] = [0, 6].map(|i| Signal {
-                    g: [v[i], v[i + 1]],
-                    h: [v[i + 2], v[i + 3], v[i + 4]],
+                    g: Vec2([v[i], v[i + 1]]),
+                    h: Sym2([v[i + 2], v[i + 3], v[i + 4]]),
                     private: v[i + 5],
-                    ..Signal::certain(b, zero)
+                    ..Signal::constant(b, 0.0)
                 });
-                limited(b, &x, &y)
+                limited(covariance(&x, &y))
             })
         } else {
-            let (vx, vy) = (x.variance(b), y.variance(b));
-            let covariance = x.covariance(b, y).total;
-            let inputs = [("xx", vx), ("xy", covariance), ("yy", vy)];
-            b.shared(of(0), &inputs, |b, v| limits(b, [v[0], v[1], v[2]]))
+            let Sym2([xx, xy, yy]) = covariance(x, y);
+            let inputs = [("xx", xx), ("xy", xy), ("yy", yy)];
+            b.shared(of(0), &inputs, |_, v| limited(Sym2([v[0], v[1], v[2]])))
         };
         Self {
-            covariance: [xx, xy, yy],
+            covariance: Sym2([xx, xy, yy]),
             eigenvalues: [major, minor],
         }
     }
 }
 
-/// The covariance of two signals, no larger than the widest, and its eigenvalues.
-fn limited(b: &mut Builder, x: &Signal, y: &Signal) -> [(&'static str, Value); 5] {
-    let (vx, vy) = (x.variance(b), y.variance(b));
-    let covariance = x.covariance(b, y).total;
-    limits(b, [vx, covariance, vy])
+/// The covariance matrix of two signals.
+fn covariance<'b>(x: &Signal<'b>, y: &Signal<'b>) -> Sym2<'b> {
+    Sym2([x.variance(), x.covariance(y).total, y.variance()])
 }
 
 /// A covariance, no larger than the widest, and its eigenvalues.
-fn limits(b: &mut Builder, covariance: [Value; 3]) -> [(&'static str, Value); 5] {
-    let [vx, _, vy] = covariance;
-    let limit = b.f32(WIDEST * WIDEST);
+fn limited(covariance: Sym2<'_>) -> [(&'static str, Float<'_>); 5] {
+    const MOST: f32 = WIDEST * WIDEST;
+    let [vx, _, vy] = covariance.0;
     // One factor for all three keeps the shape.
-    let largest = b.max(vx, vy);
-    let largest = b.max(largest, limit);
-    let factor = b.div(limit, largest);
-    let [xx, xy, yy] = covariance.map(|v| b.mul(v, factor));
-    let (sum, difference) = (b.add(xx, yy), b.sub(xx, yy));
-    let (half, tilt) = (b.scale(sum, 0.5), b.scale(difference, 0.5));
-    let square = b.dot(&[tilt, xy], &[tilt, xy]);
-    let root = b.sqrt(square);
-    let zero = b.f32(0.0);
-    let (more, less) = (b.add(half, root), b.sub(half, root));
-    let minor = b.max(less, zero);
+    let kept = covariance * (MOST / vx.max(vy).max(MOST));
+    let [major, minor] = kept.eigenvalues();
+    let [xx, xy, yy] = kept.0;
     [
         ("xx", xx),
         ("xy", xy),
         ("yy", yy),
-        ("major", more),
-        ("minor", minor),
+        ("major", major),
+        ("minor", minor.max(0.0)),
     ]
 }
 
 /// A source filtered by the footprint, in units of its position; what is not carried is 0.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Field {
+pub(crate) struct Field<'b> {
     /// M.
-    pub(crate) mean: Value,
+    pub(crate) mean: Float<'b>,
     /// ∇M.
-    pub(crate) gradient: [Value; 2],
-    /// Hess M: 11, 12, 22.
-    pub(crate) hessian: [Value; 3],
+    pub(crate) gradient: Vec2<'b>,
+    /// Hess M.
+    pub(crate) hessian: Sym2<'b>,
     /// The variance that the filter removed beyond what the mode carries.
-    pub(crate) rest: Value,
+    pub(crate) rest: Float<'b>,
 }
 
-impl Field {
+impl<'b> Field<'b> {
     /// The signal of the field at a position with coefficients: g = Jᵀ∇M, H = Jᵀ Hess(M) J +
     /// Σ ∂_i M H_i, the position's own symbols through ∇M, and the rest as a fresh ε.
-    pub(crate) fn at(&self, lower: &mut Lower<'_>, position: &[Signal]) -> Signal {
+    pub(crate) fn at(&self, lower: &mut Lower<'_, 'b>, position: &[Signal<'b>]) -> Signal<'b> {
         let [x, y] = position else {
             panic!("a position has two coordinates")
         };
         let mode = lower.mode();
-        let b = lower.b();
-        let mut signal = Signal::certain(b, self.mean);
+        let mut signal = Signal::certain(self.mean);
         if matches!(mode, Mode::Local | Mode::Quad) {
-            let [dx, dy] = self.gradient;
+            let [dx, dy] = self.gradient.0;
             let mut inputs = vec![("dx", dx), ("dy", dy)];
             for axis in [x, y] {
                 inputs.extend([
@@ -147,9 +135,9 @@ impl Field {
             }
             let second = mode == Mode::Quad;
             if second {
-                inputs.extend(self.hessian.map(|h| ("bend", h)));
+                inputs.extend(self.hessian.into_iter().map(|h| ("bend", h)));
                 for axis in [x, y] {
-                    inputs.extend(axis.h.map(|h| ("h", h)));
+                    inputs.extend(axis.h.into_iter().map(|h| ("h", h)));
                 }
             }
             let of = SharedFunction {
@@ -157,14 +145,14 @@ impl Field {
                 variant: u32::from(second),
                 doc: "The response of a field to its position.",
             };
-            let [gx, gy, hxx, hxy, hyy, private] = b.shared(of, &inputs, response);
-            signal.g = [gx, gy];
-            signal.h = [hxx, hxy, hyy];
+            let [gx, gy, hxx, hxy, hyy, private] =
+                lower.b().shared(of, &inputs, |_, v| response(v));
+            signal.g = Vec2([gx, gy]);
+            signal.h = Sym2([hxx, hxy, hyy]);
             signal.private = private;
             if !(x.shared.is_empty() && y.shared.is_empty()) {
                 // The position's own symbols.
-                let (of_x, of_y) = (x.scale(b, dx), y.scale(b, dy));
-                signal.shared = of_x.add(b, &of_y).shared;
+                signal.shared = (x * dx + y * dy).shared;
             }
         }
         lower.algebra.attach_fresh(&mut signal, self.rest);
@@ -173,33 +161,39 @@ impl Field {
 }
 
 /// g, H and the private variance of a field by its derivatives and the coordinates'.
-fn response(b: &mut Builder, v: &[Value]) -> [(&'static str, Value); 6] {
-    let [dx, dy, xx, xy, x_private, yx, yy, y_private, second @ ..] = v else {
+fn response<'b>(v: &[Float<'b>]) -> [(&'static str, Float<'b>); 6] {
+    let [
+        dx,
+        dy,
+        xx,
+        xy,
+        x_private,
+        yx,
+        yy,
+        y_private,
+        ref second @ ..,
+    ] = *v
+    else {
         panic!("derivatives and two coordinates")
     };
-    let gradient = [*dx, *dy];
-    let [gx, gy] = [[*xx, *yx], [*xy, *yy]].map(|column| b.dot(&gradient, &column));
-    let squares = gradient.map(|d| b.square(d));
-    let private = b.dot(&squares, &[*x_private, *y_private]);
-    let mut h = [b.f32(0.0); 3];
+    let gradient = Vec2([dx, dy]);
+    // Columns of J: the response of (x, y) to δ₁ and to δ₂.
+    let columns = [Vec2([xx, yx]), Vec2([xy, yy])];
+    let mut h = [dx.literal(0.0); 3];
     if let [h11, h12, h22, of_x @ .., _, _, _] = second {
         let of_y = &second[6..];
-        // Columns of J: the response of (x, y) to δ₁ and to δ₂.
-        let columns = [[*xx, *yx], [*xy, *yy]];
+        let hessian = Sym2([*h11, *h12, *h22]);
         for (k, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
-            let left = b.dot(&[*h11, *h12], &columns[j]);
-            let right = b.dot(&[*h12, *h22], &columns[j]);
-            let bent = b.dot(&columns[i], &[left, right]);
-            let own = b.dot(&gradient, &[of_x[k], of_y[k]]);
-            h[k] = b.add(own, bent);
+            let bent = columns[i].dot(hessian.times(columns[j]));
+            h[k] = gradient.dot(Vec2([of_x[k], of_y[k]])) + bent;
         }
     }
     [
-        ("gx", gx),
-        ("gy", gy),
+        ("gx", gradient.dot(columns[0])),
+        ("gy", gradient.dot(columns[1])),
         ("hxx", h[0]),
         ("hxy", h[1]),
         ("hyy", h[2]),
-        ("private", private),
+        ("private", dx.square() * x_private + dy.square() * y_private),
     ]
 }

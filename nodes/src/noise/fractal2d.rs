@@ -1,11 +1,8 @@
 //! `fractal2d`: a sum of octaves of lattice noise.
 
-use crate::noise::kernel::Kernel;
-use crate::noise::noise2d::deviation;
+use crate::noise::noise2d::{deviation, summed};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
-use crate::noise::source::{
-    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of,
-};
+use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD};
 use mipless_codegen::NodeDef;
 use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
 
@@ -40,10 +37,5 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
-    lower: |lower, node| {
-        let octaves = tiled_octaves(lower, node);
-        let kernel = Kernel::of(lower, node);
-        let extent = EXTENT * octaves.sd();
-        octaves_of(lower, node, (kernel, octaves), (0.25, extent))
-    },
+    lower: |lower, node| summed(lower, node, tiled_octaves(lower, node)),
 };

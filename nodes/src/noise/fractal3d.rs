@@ -1,11 +1,8 @@
 //! `fractal3d`: a sum of octaves of lattice noise in space.
 
-use crate::noise::noise3d::deviation;
+use crate::noise::noise3d::{deviation, summed};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
-use crate::noise::source::{
-    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, scaled,
-};
-use crate::noise::volume::{self, Kind};
+use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED};
 use mipless_codegen::NodeDef;
 use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
 
@@ -40,11 +37,5 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
-    lower: |lower, node| {
-        let octaves = tiled_octaves(lower, node);
-        let position = place(lower, node);
-        let kind = Kind::of(lower, node);
-        let unit = volume::filtered(lower, &position, kind, octaves);
-        scaled(lower, node, unit, (0.25, EXTENT * octaves.sd()))
-    },
+    lower: |lower, node| summed(lower, node, tiled_octaves(lower, node)),
 };

@@ -17,12 +17,15 @@ mod energy;
 mod impulse;
 
 use super::bend::localized;
+use super::cell::lattice_seed;
+use super::cell::place::{called, declared, declared_spread, field, window_start};
 use super::field::{Field, Spread};
+use super::remainder::{remainder, share};
 use super::window::count;
 use energy::energies;
-use impulse::{Kernel, row};
+use impulse::{Kernel, Rows, row};
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Sym2, Vec2, dot};
 use mipless_codegen::moments::{Mode, Signal};
 use std::f32::consts::{PI, TAU};
 
@@ -104,60 +107,23 @@ fn orders(mode: Mode) -> usize {
 
 /// The filtered noise at a position in cells, of unit variance: its real part, and where `complex`
 /// the imaginary part too, in which sines stand for cosines. `orientation` is a unit vector.
-pub(crate) fn filtered(
-    lower: &mut Lower<'_>,
-    position: &[Signal],
+pub(crate) fn filtered<'b>(
+    lower: &mut Lower<'_, 'b>,
+    position: &[Signal<'b>],
     gabor: Gabor,
-    orientation: [Value; 2],
+    orientation: Vec2<'b>,
     complex: bool,
-) -> Vec<Field> {
+) -> Vec<Field<'b>> {
     let mode = lower.mode();
-    let spread = Spread::of(lower.b(), position);
-    let size = lower.b().sqrt(spread.eigenvalues[0]);
-    let size = lower.b().scale(size, gabor.cell());
-    lower.source_footprint(size);
+    let spread = Spread::of(position);
+    lower.source_footprint(spread.eigenvalues[0].sqrt() * gabor.cell());
     let key = format!("gabor {mode:?} {complex} {gabor:?}");
     let function = lower.function(&key, |module| build(module, mode, gabor, complex));
-    let b = lower.b();
-    let mut arguments = Vec::new();
-    for axis in position {
-        // The lattice needs a cell and a fraction, whatever the position carries.
-        let (cell, fraction) = match axis.cell {
-            Some(cell) => (cell, axis.mean),
-            None => {
-                let whole = b.floor(axis.mean);
-                let fraction = b.sub(axis.mean, whole);
-                (b.trunc_i(whole), fraction)
-            }
-        };
-        arguments.extend([cell, fraction]);
-    }
-    arguments.extend(orientation);
-    if mode.filters() {
-        arguments.extend(spread.covariance);
-        arguments.extend(spread.eigenvalues);
-    }
-    let results = b.call(&function, &arguments);
-    let zero = b.f32(0.0);
-    let orders = orders(mode);
+    let results = called(lower, &function, (position, &spread), orientation);
     let parts = if complex { 2 } else { 1 };
-    let rest = |part: usize| results.get(parts * orders + part).copied().unwrap_or(zero);
-    (0..parts)
-        .map(|part| {
-            let at = |i: usize| {
-                if i < orders {
-                    results[part * orders + i]
-                } else {
-                    zero
-                }
-            };
-            Field {
-                mean: at(0),
-                gradient: [at(1), at(2)],
-                hessian: [at(3), at(4), at(5)],
-                rest: rest(part),
-            }
-        })
+    let (fields, rests) = results.split_at(parts * orders(mode));
+    (fields.chunks(orders(mode)).enumerate())
+        .map(|(part, numbers)| field(numbers, rests.get(part).copied()))
         .collect()
 }
 
@@ -165,6 +131,18 @@ pub(crate) fn filtered(
 /// for the place of an impulse within its cell.
 fn least(gabor: Gabor) -> f32 {
     (2.0 * RADIUS * gabor.alpha() + 0.5).ceil().min(MOST)
+}
+
+/// wᵀMw.
+fn form<'b>(w: Vec2<'b>, m: Sym2<'b>) -> Float<'b> {
+    let [xx, xy, yy] = *w.outer();
+    dot([xx, xy + xy, yy], *m)
+}
+
+/// PMP.
+fn congruent<'b>(p: Sym2<'b>, m: Sym2<'b>) -> Sym2<'b> {
+    let rows = [Vec2([p[0], p[1]]), Vec2([p[1], p[2]])];
+    Sym2([(0, 0), (0, 1), (1, 1)].map(|(i, j)| rows[i].dot(m.times(rows[j]))))
 }
 
 /// The sums over all impulses, as a function of the module.
@@ -176,107 +154,74 @@ fn build(module: &mut Module, mode: Mode, gabor: Gabor, complex: bool) -> Functi
         gabor,
     };
     let row = row(module, kernel);
-    let mut b = Builder::new("gabor", "A sum of filtered Gabor kernels.");
-    let cell_x = b.param("cell_x", Type::I32);
-    let x = b.param_f32("x");
-    let cell_y = b.param("cell_y", Type::I32);
-    let y = b.param_f32("y");
-    let orientation = [b.param_f32("cosine"), b.param_f32("sine")];
-    let seed = b.u32(gabor.seed as u32 ^ 0x6a09_e667);
-    let seed = b.scramble(seed);
+    let b = &Builder::new("gabor", "A sum of filtered Gabor kernels.");
+    let ([cell_x, cell_y], [x, y]) = declared(b);
+    let orientation = Vec2(["cosine", "sine"].map(|name| b.float_param(name)));
+    let seed = lattice_seed(b, gabor.seed, 0x6a09_e667);
+    let before = vec![b.float(0.0); kernel.sums()];
     let alpha = gabor.alpha();
     // The kernels' variance is πα²/2 a cell.
     let unit = (2.0 / (PI * alpha * alpha)).sqrt();
     if !mode.filters() {
-        let side = b.f32(least(gabor));
-        let whole = b.u32(least(gabor) as u32);
-        let zero = b.f32(0.0);
-        let start = impulse::window(&mut b, y, side);
-        let mut captures = vec![start, side, whole, zero, cell_x, cell_y, x, y, seed];
-        captures.extend(orientation);
-        let init = vec![zero; kernel.sums()];
-        let sums = b.fold(&row, whole, &init, &captures);
+        let (side, count) = (b.float(least(gabor)), b.uint(least(gabor) as u32));
+        let rows = Rows {
+            start_y: window_start(y, side),
+            columns: side,
+            column_count: count,
+            shear: b.float(0.0),
+            cell_x,
+            cell_y,
+            x,
+            y,
+            seed,
+        };
+        let sums = b.fold(&row, count, before, (rows, orientation));
         for (i, sum) in sums.into_iter().enumerate() {
-            let sum = b.scale(sum, unit);
-            b.result(format!("part_{i}"), sum);
+            b.result(format!("part_{i}"), sum * unit);
         }
         return b.finish(module);
     }
-    let [s_xx, s_xy, s_yy] = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
-    let eigenvalues = [b.param_f32("s_major"), b.param_f32("s_minor")];
-    let (one, zero) = (b.f32(1.0), b.f32(0.0));
+    let Spread {
+        covariance: s,
+        eigenvalues: [s_major, s_minor],
+    } = declared_spread(b);
     let area = alpha * alpha;
 
     // T = α²I + Σ, P = T⁻¹, and what the waves lose: C = α²ΣP = α²I − α⁴P.
-    let (t_xx, t_yy) = (b.offset(s_xx, area), b.offset(s_yy, area));
-    let shares = eigenvalues.map(|s| {
-        let y = b.scale(s, 1.0 / area);
-        b.offset(y, 1.0)
-    });
-    let product = b.mul(shares[0], shares[1]);
-    let determinant = b.scale(product, area * area);
-    let inverse = b.div(one, determinant);
-    let (p_xx, p_yy) = (b.mul(t_yy, inverse), b.mul(t_xx, inverse));
-    let p_xy = b.mul(s_xy, inverse);
-    let p_xy = b.neg(p_xy);
-    let p = [p_xx, p_xy, p_yy];
+    let (t_xx, t_yy) = (s[0] + area, s[2] + area);
+    let [more, less] = [s_major, s_minor].map(|s| s * (1.0 / area) + 1.0);
+    let determinant = more * less * (area * area);
+    let inverse = 1.0 / determinant;
+    let p = Sym2([t_yy * inverse, -(s[1] * inverse), t_xx * inverse]);
     // ΣP without the difference: (Σ + det Σ/α² I)/(α² (1 + y₁)(1 + y₂)).
-    let both = b.mul(eigenvalues[0], eigenvalues[1]);
-    let both = b.scale(both, 1.0 / area);
-    let scale = b.scale(inverse, area * area);
-    let c = [s_xx, s_xy, s_yy].map(|s| b.mul(s, scale));
-    let diagonal = b.mul(both, scale);
-    let c = [b.add(c[0], diagonal), c[1], b.add(c[2], diagonal)];
+    let scale = inverse * (area * area);
+    let diagonal = s_major * s_minor * (1.0 / area) * scale;
+    let [c_xx, c_xy, c_yy] = *(s * scale);
+    let c = Sym2([c_xx + diagonal, c_xy, c_yy + diagonal]);
 
     // What is left of the noise, and how far its kernels reach: R² = R₀² + ln F in units of T.
-    let root = b.sqrt(inverse);
-    let share = b.scale(root, area);
-    let ([f, v1, v2], slopes) = energies(&mut b, gabor, orientation, c, p, share);
-    let tiny = b.f32(1e-12);
-    let guarded = b.max(f, tiny);
-    let reach = b.ln(guarded);
-    let reach = b.offset(reach, RADIUS * RADIUS);
-    let reach = b.max(reach, one);
-    let reach = b.sqrt(reach);
-    let reach = b.add(reach, reach);
-    let rows = b.sqrt(t_yy);
-    let rows = b.mul(rows, reach);
-    let rows = b.offset(rows, 0.49);
-    let ratio = b.div(determinant, t_yy);
-    let columns = b.sqrt(ratio);
-    let columns = b.mul(columns, reach);
-    let shear = b.div(s_xy, t_yy);
-    let lean = b.abs(shear);
-    let columns = b.add(columns, lean);
-    let columns = b.offset(columns, 0.49);
-    let needed = b.max(rows, columns);
+    let strength = inverse.sqrt() * area;
+    let ([f, v1, v2], slopes) = energies(gabor, orientation, c, p, strength);
+    let guarded = f.max(1e-12);
+    let radius = (guarded.ln() + RADIUS * RADIUS).max(1.0).sqrt();
+    let diameter = radius + radius;
+    let shear = s[1] / t_yy;
+    let rows = t_yy.sqrt() * diameter + 0.49;
+    let columns = (determinant / t_yy).sqrt() * diameter + shear.abs() + 0.49;
+    let needed = rows.max(columns);
     // Where nothing is filtered the window is that of the point function.
-    let calm = least(gabor);
-    let near = b.f32(0.05 * area);
-    let still = b.lt(eigenvalues[0], near);
-    let lowest = b.f32(calm);
-    let (full_rows, full_columns) = (b.max(rows, lowest), b.max(columns, lowest));
-    let rows = b.select(still, full_rows, rows);
-    let columns = b.select(still, full_columns, columns);
-    let [[rows, row_count], [columns, column_count]] =
-        [rows, columns].map(|needed| count(&mut b, needed, [1.0, MOST]));
+    let still = s_major.lt(0.05 * area);
+    let [(rows, row_count), (columns, column_count)] = [rows, columns].map(|needed| {
+        let needed = still.select(needed.max(least(gabor)), needed);
+        count(needed, [1.0, MOST])
+    });
 
     // It fades to nothing before it is dropped.
-    let amplitude = b.sqrt(guarded);
-    let ramp = |b: &mut Builder, x: Value, low: f32, high: f32| {
-        let x = b.offset(x, -low);
-        let x = b.scale(x, 1.0 / (high - low));
-        b.clamp(x, 0.0, 1.0)
-    };
-    let by_amplitude = ramp(&mut b, amplitude, FADE[0], FADE[1]);
-    let by_reach = ramp(&mut b, needed, MOST, MOST * 0.8);
-    let fade = b.mul(by_amplitude, by_reach);
-    let gone = b.le(fade, zero);
-    let none = b.u32(0);
-    let row_count = b.select(gone, none, row_count);
-    let start = impulse::window(&mut b, y, rows);
-    let mut captures = vec![
-        start,
+    let by_amplitude = share(guarded.sqrt(), FADE[0], FADE[1]);
+    let fade = by_amplitude * share(needed, MOST, MOST * 0.8);
+    let row_count = fade.le(0.0).select(0u32, row_count);
+    let rows = Rows {
+        start_y: window_start(y, rows),
         columns,
         column_count,
         shear,
@@ -285,76 +230,41 @@ fn build(module: &mut Module, mode: Mode, gabor: Gabor, complex: bool) -> Functi
         x,
         y,
         seed,
-    ];
-    captures.extend(orientation);
-    captures.extend(p);
-    captures.extend(c);
-    let init = vec![zero; kernel.sums()];
-    let sums = b.fold(&row, row_count, &init, &captures);
+    };
+    let sums = b.fold(&row, row_count, before, (rows, (orientation, p, c)));
 
     // α²/√det T, and P on the sums: ∇ = −P G, Hess = P S P − P M.
-    let weight = b.scale(share, unit);
-    let weight = b.mul(weight, fade);
-    let rows = [[p_xx, p_xy], [p_xy, p_yy]];
+    let weight = strength * unit * fade;
     for (k, part) in sums.chunks(kernel.orders).enumerate() {
-        let part: Vec<Value> = part.iter().map(|&sum| b.mul(sum, weight)).collect();
+        let part: Vec<Float<'_>> = part.iter().map(|&sum| sum * weight).collect();
         let mut results = vec![part[0]];
-        if kernel.orders > 1 {
-            for row in &rows {
-                let gradient = b.dot(row, &part[1..3]);
-                results.push(b.neg(gradient));
-            }
+        if let [_, gx, gy, ..] = part[..] {
+            results.extend(-p.times(Vec2([gx, gy])));
         }
-        if kernel.orders > 3 {
-            let [s11, s12, s22] = [part[3], part[4], part[5]];
-            for (i, j) in [(0, 0), (0, 1), (1, 1)] {
-                let left = b.dot(&[s11, s12], &rows[j]);
-                let right = b.dot(&[s12, s22], &rows[j]);
-                let bent = b.dot(&rows[i], &[left, right]);
-                let own = b.mul(rows[i][j], part[0]);
-                results.push(b.sub(bent, own));
-            }
+        if let [_, _, _, xx, xy, yy] = part[..] {
+            results.extend(congruent(p, Sym2([xx, xy, yy])) - p * part[0]);
         }
         for (i, result) in results.into_iter().enumerate() {
             b.result(format!("part_{k}_{i}"), result);
         }
     }
-    if mode.spreads() {
-        let rest = remainder(&mut b, mode, [f, v1, v2], fade);
-        let s = [s_xx, s_xy, s_yy];
-        for part in 0..kernel.sums() / kernel.orders {
-            let mut rest = rest;
-            if mode == Mode::Local {
-                let mean = b.mul(sums[part * kernel.orders], weight);
-                rest = localized(&mut b, rest, mean, f, slopes, s);
-            }
-            b.result(format!("rest_{part}"), rest);
+    if !mode.spreads() {
+        return b.finish(module);
+    }
+    let rest = match mode {
+        // A second order that carries nothing: roundings are taken off here too.
+        Mode::Ensemble => {
+            let none = b.float(0.0);
+            remainder(Mode::Quad, [f, none, none], fade)
         }
+        _ => remainder(mode, [f, v1, v2], fade),
+    };
+    for (part, sums) in sums.chunks(kernel.orders).enumerate() {
+        let rest = match mode {
+            Mode::Local => localized(rest, sums[0] * weight, f, slopes, s),
+            _ => rest,
+        };
+        b.result(format!("rest_{part}"), rest);
     }
     b.finish(module)
-}
-
-/// What the filter removed, V = 1 − F, less what the mode carries of it, plus what fading drops.
-/// V − V₁ is at least V₂; below 4e-7 it is rounding.
-fn remainder(b: &mut Builder, mode: Mode, [f, v1, v2]: [Value; 3], fade: Value) -> Value {
-    let (one, zero) = (b.f32(1.0), b.f32(0.0));
-    let lost = b.sub(one, f);
-    let carried = match mode {
-        Mode::Local => v1,
-        Mode::Quad => b.add(v1, v2),
-        _ => zero,
-    };
-    let left = b.sub(lost, carried);
-    let left = b.offset(left, -4e-7);
-    let least = if mode == Mode::Local { v2 } else { zero };
-    let left = b.max(left, least);
-    let left = b.max(left, zero);
-    let kept = b.sub(one, fade);
-    let dropped = b.square(kept);
-    let dropped = b.mul(dropped, f);
-    let square = b.square(fade);
-    let uncarried = b.sub(one, square);
-    let back = b.mul(uncarried, carried);
-    let left = b.add(left, back);
-    b.add(left, dropped)
 }

@@ -3,7 +3,7 @@
 use crate::coordinate::rotate2d::turn;
 use crate::noise::gabor::{self, Gabor};
 use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD, shaped};
-use mipless_codegen::ir::Value;
+use mipless_codegen::ir::Vec2;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -136,7 +136,7 @@ pub(crate) fn deviation(inputs: &dyn InputView) -> f32 {
 }
 
 /// The noise that the uniform ports describe.
-pub(crate) fn described(lower: &Lower<'_>, node: &Node) -> Gabor {
+pub(crate) fn described(lower: &Lower<'_, '_>, node: &Node) -> Gabor {
     Gabor {
         bandwidth: lower.float(node, "bandwidth"),
         anisotropy: lower.float(node, "anisotropy"),
@@ -147,28 +147,23 @@ pub(crate) fn described(lower: &Lower<'_>, node: &Node) -> Gabor {
 }
 
 /// texcoord · frequency in cells.
-pub(crate) fn cells(lower: &mut Lower<'_>, node: &Node, gabor: Gabor) -> Vec<Signal> {
-    let frequency = lower.signal(node, "frequency");
-    let b = lower.b();
-    let per_cell = b.f32(1.0 / gabor.cell());
-    let frequency = frequency.scale(b, per_cell);
+pub(crate) fn cells<'b>(lower: &mut Lower<'_, 'b>, node: &Node, gabor: Gabor) -> Vec<Signal<'b>> {
+    let frequency = lower.signal(node, "frequency") * (1.0 / gabor.cell());
     (lower.bundle(node, "texcoord").iter())
         .map(|axis| lower.algebra.product(axis, &frequency))
         .collect()
 }
 
 /// The unit vector of the orientation.
-pub(crate) fn orientation(lower: &mut Lower<'_>, node: &Node) -> [Value; 2] {
-    let angle = lower.number(node, "orientation");
-    let angle = Signal::certain(lower.b(), angle);
-    let [cosine, sine] = turn(lower, &angle);
-    [cosine.mean, sine.mean]
+pub(crate) fn orientation<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Vec2<'b> {
+    let angle = Signal::certain(lower.number(node, "orientation"));
+    Vec2(turn(lower, &angle).map(|part| part.mean))
 }
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let gabor = described(lower, node);
     let position = cells(lower, node, gabor);
     let orientation = orientation(lower, node);

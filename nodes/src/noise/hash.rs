@@ -1,6 +1,6 @@
 //! What a hash of a lattice point decides, identical on every back end.
 
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Builder, Float, Int, Uint};
 
 /// What a step along x and y adds to the key of a lattice point. The keys of two points are equal
 /// only if they lie 63,000 cells apart, the most that 32 bits allow.
@@ -10,42 +10,30 @@ const FACTORS: [u32; 2] = [0x9e37_79b1, 0x27d4_eb2f];
 pub(crate) const NEXT_OCTAVE: u32 = 0x85eb_ca6b;
 
 /// What one step along x and along y adds to a key.
-pub(crate) fn steps(b: &mut Builder) -> [Value; 2] {
-    FACTORS.map(|factor| b.u32(factor))
+pub(crate) fn steps(b: &Builder) -> [Uint<'_>; 2] {
+    FACTORS.map(|factor| b.uint(factor))
 }
 
-/// `key` after `cells` (an i32) steps, each of which adds `step`.
-pub(crate) fn walked(b: &mut Builder, key: Value, cells: Value, step: Value) -> Value {
-    let cells = b.cast_u(cells);
-    let walked = b.mul_u(cells, step);
-    b.add_u(key, walked)
+/// `key` after so many steps, each of which adds `step`.
+pub(crate) fn walked<'b>(key: Uint<'b>, cells: Int<'b>, step: Uint<'b>) -> Uint<'b> {
+    key + cells.to_uint() * step
 }
 
 /// The key of a lattice point: what is scrambled to its random number.
-pub(crate) fn key(b: &mut Builder, cells: [Value; 2], seed: Value) -> Value {
-    let [x, y] = steps(b);
-    let key = walked(b, seed, cells[0], x);
-    walked(b, key, cells[1], y)
+pub(crate) fn key<'b>([x, y]: [Int<'b>; 2], seed: Uint<'b>) -> Uint<'b> {
+    let [step_x, step_y] = steps(seed.builder());
+    walked(walked(seed, x, step_x), y, step_y)
 }
 
 /// (cos θ, sin θ) of a uniform angle, from the bits of a hash: a parabola refined once, within
 /// 1.1e-3 of the circle. It defines the noise; nothing else depends on it.
-pub(crate) fn direction(b: &mut Builder, hash: Value) -> [Value; 2] {
-    let quarter = b.u32(0x4000_0000);
-    let turned = b.add_u(hash, quarter);
-    [turned, hash].map(|h| {
+pub(crate) fn direction(hash: Uint<'_>) -> [Float<'_>; 2] {
+    const HALF_TURN: f32 = (1u32 << 31) as f32;
+    [hash + 0x4000_0000, hash].map(|hash| {
         // t in [−1, 1) half turns; sin πt ≈ y (0.775 + 0.225 |y|), y = 4t (1 − |t|).
-        const HALF_TURN: f32 = (1u32 << 31) as f32;
-        let signed = b.cast_i(h);
-        let signed = b.float_i(signed);
-        let magnitude = b.abs(signed);
-        let slope = b.scale(magnitude, -4.0 / HALF_TURN / HALF_TURN);
-        let slope = b.offset(slope, 4.0 / HALF_TURN);
-        let y = b.mul(signed, slope);
-        let bend = b.abs(y);
-        let bend = b.scale(bend, 0.225);
-        let bend = b.offset(bend, 0.775);
-        b.mul(y, bend)
+        let t = signed(hash);
+        let y = t * (t.abs() * (-4.0 / HALF_TURN / HALF_TURN) + 4.0 / HALF_TURN);
+        y * (y.abs() * 0.225 + 0.775)
     })
 }
 
@@ -55,21 +43,16 @@ pub(crate) const COLUMN_FACTOR: u32 = 0x85eb_ca77;
 pub(crate) const ROW_FACTOR: u32 = 0x9e37_79b1;
 
 /// The hash of a lattice point from the words of its column and its row, in half the steps of
-/// [`Builder::scramble`]: only its leading bits are good, and they are what [`compass`] and
+/// [`Uint::scramble`]: only its leading bits are good, and they are what [`compass`] and
 /// [`signed`] read. Over 10⁶ points no correlation at any offset stands out.
-pub(crate) fn corner(b: &mut Builder, column: Value, row: Value) -> Value {
-    let word = b.xor_u(column, row);
-    let by = b.u32(15);
-    let shifted = b.shr_u(word, by);
-    let word = b.xor_u(word, shifted);
-    let factor = b.u32(0x846c_a68b);
-    b.mul_u(word, factor)
+pub(crate) fn corner<'b>(column: Uint<'b>, row: Uint<'b>) -> Uint<'b> {
+    let word = column ^ row;
+    (word ^ (word >> 15)) * 0x846c_a68b
 }
 
 /// A number uniform in ±2³¹ from the leading bits of a hash.
-pub(crate) fn signed(b: &mut Builder, hash: Value) -> Value {
-    let signed = b.cast_i(hash);
-    b.float_i(signed)
+pub(crate) fn signed(hash: Uint<'_>) -> Float<'_> {
+    hash.to_int().to_float()
 }
 
 /// The length of [`compass`], to within 6 %.
@@ -80,15 +63,8 @@ pub(crate) const COMPASS_ENERGY: f32 = 8.0 / 15.0;
 
 /// A random direction from the leading bits of a hash: sine and cosine as parabolas of a half turn
 /// of 2³¹. It is not scaled, which would cost two operations a lattice point.
-pub(crate) fn compass(b: &mut Builder, hash: Value) -> [Value; 2] {
+pub(crate) fn compass(hash: Uint<'_>) -> [Float<'_>; 2] {
     const HALF_TURN: f32 = (1u32 << 31) as f32;
-    let angle = signed(b, hash);
-    let magnitude = b.abs(angle);
-    let (quarter, half) = (b.f32(0.5 * HALF_TURN), b.f32(HALF_TURN));
-    let turned = b.sub(quarter, magnitude);
-    let turned_magnitude = b.abs(turned);
-    [(turned, turned_magnitude), (angle, magnitude)].map(|(t, magnitude)| {
-        let rest = b.sub(half, magnitude);
-        b.mul(t, rest)
-    })
+    let angle = signed(hash);
+    [0.5 * HALF_TURN - angle.abs(), angle].map(|t| t * (HALF_TURN - t.abs()))
 }

@@ -5,6 +5,7 @@ use super::field::Spread;
 use super::lattice::{self, WAVELENGTH};
 use super::perlin::{self, Kind};
 use super::sum::Octaves;
+use mipless_codegen::ir::Scalar;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Lower, NodeRule};
 use mipless_graph::Node;
@@ -20,7 +21,7 @@ pub(crate) enum Kernel {
 
 impl Kernel {
     /// The node's `kernel`.
-    pub(crate) fn of(lower: &Lower<'_>, node: &Node) -> Self {
+    pub(crate) fn of(lower: &Lower<'_, '_>, node: &Node) -> Self {
         if lower.choice(node, "kernel") == "quintic" {
             Self::Quintic(Kind::Gradient)
         } else {
@@ -31,13 +32,13 @@ impl Kernel {
     /// The filtered sum of octaves at a position in cells of the first octave: pivot + amplitude · X,
     /// where the first octave of X has variance 1 and |X| is at most `extent`. What the filter
     /// removed is private.
-    pub(crate) fn signal(
+    pub(crate) fn signal<'b>(
         self,
-        lower: &mut Lower<'_>,
-        position: &[Signal],
+        lower: &mut Lower<'_, 'b>,
+        position: &[Signal<'b>],
         octaves: Octaves,
-        shape: Affine,
-    ) -> Signal {
+        shape: Affine<'b>,
+    ) -> Signal<'b> {
         let Octaves {
             count,
             part,
@@ -64,28 +65,31 @@ impl Kernel {
             doc: "A filtered sum of octaves, as a signal.",
             literals: &literals,
         };
-        let b = lower.b();
-        let seed = octaves.scrambled_seed(b);
         let numbers = [
-            ("seed", seed),
-            ("amplitude", shape.amplitude),
-            ("pivot", shape.pivot),
+            ("seed", octaves.scrambled_seed(lower.b()).into()),
+            ("amplitude", shape.amplitude.into()),
+            ("pivot", shape.pivot.into()),
         ];
         let signals = [(super::field::X, x), (super::field::Y, y)];
         lower.rule(of, &signals, &numbers, |lower, position, numbers| {
+            let seed = numbers[0].uint();
+            let [amplitude, pivot] = [numbers[1], numbers[2]].map(Scalar::float);
             let field = match self {
-                Self::Gaussian => lattice::filtered(lower, position, octaves, numbers[0]),
-                Self::Quintic(kind) => perlin::filtered(lower, position, kind, octaves, numbers[0]),
+                Self::Gaussian => lattice::filtered(lower, position, octaves, seed),
+                Self::Quintic(kind) => perlin::filtered(lower, position, kind, octaves, seed),
             };
-            let unit = field.at(lower, position);
-            let b = lower.b();
-            unit.scale(b, numbers[1]).offset(b, numbers[2])
+            (field.at(lower, position) * amplitude).offset(pivot)
         })
     }
 
     /// Reports what the footprint is to a sum of octaves at this position, in cells of the first
     /// octave, which dominates.
-    pub(crate) fn report(self, lower: &mut Lower<'_>, position: &[Signal], octaves: Octaves) {
+    pub(crate) fn report<'b>(
+        self,
+        lower: &mut Lower<'_, 'b>,
+        position: &[Signal<'b>],
+        octaves: Octaves,
+    ) {
         if !lower.measures() {
             return;
         }
@@ -93,10 +97,7 @@ impl Kernel {
             Self::Gaussian => WAVELENGTH,
             Self::Quintic(kind) => kind.wavelength(),
         };
-        let b = lower.b();
-        let spread = Spread::of(b, position);
-        let size = b.sqrt(spread.eigenvalues[0]);
-        let wavelengths = b.scale(size, 1.0 / wavelength);
-        lower.source_detail(wavelengths, octaves.finer());
+        let size = Spread::of(position).eigenvalues[0].sqrt();
+        lower.source_detail(size * (1.0 / wavelength), octaves.finer());
     }
 }

@@ -15,7 +15,7 @@ mod width;
 use super::field::{Field, Spread};
 use super::sum::{Left, Octaves};
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Float, Uint};
 use mipless_codegen::moments::{Mode, Signal};
 pub(super) use width::WAVELENGTH;
 use width::WIDTH;
@@ -24,12 +24,12 @@ impl Octaves {
     /// How many octaves the footprint leaves, at most, and the variance of the others. Each is
     /// finer than the one before: where one is gone, all that follow are. With y the smaller
     /// eigenvalue of Σ/a² a footprint leaves no more than (1 + y)⁻³ of the variance.
-    fn left(self, b: &mut Builder, minor: Value) -> Left {
-        let (none, one, zero) = (b.u32(0), b.u32(1), b.f32(0.0));
+    fn left(self, minor: Float<'_>) -> Left<'_> {
+        let b = minor.builder();
         let mut left = Left {
-            count: none,
-            last: none,
-            gone: zero,
+            count: b.uint(0),
+            last: b.uint(0),
+            gone: b.float(0.0),
         };
         let total = self.sd().powi(2);
         let shares = (0..self.count).map(|_| 1.0);
@@ -47,17 +47,14 @@ impl Octaves {
         for (k, &[_, energy]) in octaves.iter().enumerate() {
             // Where amplitudes grow, a later one may be left longer.
             let limit = octaves[k..].iter().map(|o| o[0]).fold(0.0, f32::max);
-            let limit = b.f32(limit);
-            let is_left = b.lt(minor, limit);
-            let step = b.select(is_left, one, none);
+            let is_left = minor.lt(limit);
+            let step = is_left.select(1u32, 0u32);
             if k < self.count as usize {
-                left.count = b.add_u(left.count, step);
+                left.count += step;
             } else {
                 left.last = step;
             }
-            let energy = b.f32(energy);
-            let energy = b.select(is_left, zero, energy);
-            left.gone = b.add(left.gone, energy);
+            left.gone += is_left.select(0.0, energy);
         }
         left
     }
@@ -65,14 +62,14 @@ impl Octaves {
 
 /// The filtered sum of octaves at a position in cells of the first octave; unit variance of the
 /// first octave.
-pub(crate) fn filtered(
-    lower: &mut Lower<'_>,
-    position: &[Signal],
+pub(crate) fn filtered<'b>(
+    lower: &mut Lower<'_, 'b>,
+    position: &[Signal<'b>],
     octaves: Octaves,
-    seed: Value,
-) -> Field {
+    seed: Uint<'b>,
+) -> Field<'b> {
     let mode = lower.mode();
-    let spread = Spread::of(lower.b(), position);
+    let spread = Spread::of(position);
     let Octaves {
         lacunarity,
         diminish,
@@ -87,15 +84,10 @@ pub(crate) fn filtered(
         Mode::Point => point::octave(module, octaves),
         _ => filtered::octave(module, mode, octaves),
     });
-    let b = lower.b();
-    let mut captures = Vec::new();
-    if mode != Mode::Point {
-        captures.extend(spread.covariance);
-        let [major, minor] = spread
-            .eigenvalues
-            .map(|s| b.scale(s, 1.0 / (WIDTH * WIDTH)));
-        captures.extend([b.add(major, minor), b.mul(major, minor)]);
-    }
-    let left = (mode.filters()).then(|| octaves.left(lower.b(), spread.eigenvalues[1]));
-    octaves.sum(lower, &octave, (position, seed), &captures, left)
+    let captures = (mode != Mode::Point).then(|| {
+        let [major, minor] = spread.eigenvalues.map(|s| s * (1.0 / (WIDTH * WIDTH)));
+        (spread.covariance, major + minor, major * minor)
+    });
+    let left = (mode.filters()).then(|| octaves.left(spread.eigenvalues[1]));
+    octaves.sum(lower, &octave, (position, seed), captures, left)
 }

@@ -11,9 +11,9 @@ use mipless_graph::Node;
 
 /// One octave of variance 1.
 #[derive(Clone, Debug)]
-pub(crate) struct Layer {
+pub(crate) struct Layer<'b> {
     /// The filtered noise.
-    pub(crate) noise: Signal,
+    pub(crate) noise: Signal<'b>,
     /// diminishᵏ.
     pub(crate) amplitude: f32,
     /// Its share: 1, but for the last one of a fractional count.
@@ -23,7 +23,11 @@ pub(crate) struct Layer {
 /// The octaves that a node's ports ask for, the coarsest first, at a position in cells of it.
 ///
 /// Their remainders join the private variance of each, whatever becomes of the node.
-pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) -> Vec<Layer> {
+pub(crate) fn layers<'b>(
+    lower: &mut Lower<'_, 'b>,
+    node: &Node,
+    mut position: Vec<Signal<'b>>,
+) -> Vec<Layer<'b>> {
     let kernel = Kernel::of(lower, node);
     let octaves = tiled_octaves(lower, node);
     // What is made of the octaves has the detail of the first one at least.
@@ -34,7 +38,6 @@ pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) 
     };
     kernel.report(lower, &position, first);
     let shares = std::mem::replace(&mut lower.algebra.shares, false);
-    let mut position = position;
     let mut period = octaves.period as f32;
     let mut layers = Vec::new();
     for k in 0..octaves.count + u32::from(octaves.part > 0.0) {
@@ -56,12 +59,9 @@ pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) 
             share: if k < octaves.count { 1.0 } else { octaves.part },
         });
         period *= octaves.lacunarity;
-        let b = lower.b();
-        let lacunarity = b.f32(octaves.lacunarity);
         // Octaves must not share lattice points, where the variance of all is largest.
-        let shift = b.f32(0.381_966);
         for axis in &mut position {
-            *axis = axis.scale(b, lacunarity).offset(b, shift);
+            *axis = (&*axis * octaves.lacunarity).offset(0.381_966);
         }
     }
     lower.algebra.shares = shares;
@@ -70,9 +70,8 @@ pub(crate) fn layers(lower: &mut Lower<'_>, node: &Node, position: Vec<Signal>) 
 
 /// Hands the private variance of a signal to the algebra as fresh: a symbol where the node is read
 /// by several.
-pub(crate) fn published(lower: &mut Lower<'_>, mut signal: Signal) -> Signal {
-    let zero = lower.b().f32(0.0);
-    let private = std::mem::replace(&mut signal.private, zero);
+pub(crate) fn published<'b>(lower: &mut Lower<'_, 'b>, mut signal: Signal<'b>) -> Signal<'b> {
+    let private = std::mem::replace(&mut signal.private, lower.b().float(0.0));
     lower.algebra.attach_fresh(&mut signal, private);
     signal
 }

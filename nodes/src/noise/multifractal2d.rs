@@ -81,19 +81,14 @@ pub(crate) const DEF: NodeDef = NodeDef {
         let shares = std::mem::replace(&mut lower.algebra.shares, false);
         let mut product = Signal::constant(lower.b(), 1.0);
         for layer in &layers {
-            let b = lower.b();
-            let quarter = b.f32(0.25 * layer.amplitude * layer.share);
             // 1 + share · (offset − 1).
-            let level = b.scale(offset, layer.share);
-            let level = b.offset(level, 1.0 - layer.share);
-            let factor = layer.noise.scale(b, quarter).offset(b, level);
-            product = lower.algebra.product(&product, &factor);
+            let level = offset * layer.share + (1.0 - layer.share);
+            let varied = &layer.noise * (0.25 * layer.amplitude * layer.share);
+            product = lower.algebra.product(&product, &varied.offset(level));
         }
         lower.algebra.shares = shares;
         let product = published(lower, product);
-        let amplitude = lower.signal(node, "amplitude");
-        let pivot = lower.signal(node, "pivot");
-        let scaled = lower.algebra.product(&product, &amplitude);
-        vec![scaled.add(lower.b(), &pivot)]
+        let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+        vec![lower.algebra.product(&product, &amplitude) + pivot]
     },
 };

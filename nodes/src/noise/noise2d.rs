@@ -5,8 +5,8 @@ use crate::noise::source::{
     AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, tiling,
 };
 use crate::noise::sum::Octaves;
-use mipless_codegen::NodeDef;
-use mipless_graph::{Category, Doc, InputView, NodeSpec, OutputType, Type};
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType, Type};
 
 /// max |CDF − Φ| of the quadrupole kernel and of Perlin's, over 4·10⁶ independent points.
 const DEVIATIONS: [f32; 2] = [0.0046, 0.0127];
@@ -71,19 +71,32 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "noise2d" } } }"#,
 };
 
+/// A sum of one octave.
+pub(crate) fn one_octave(seed: i32, period: i32) -> Octaves {
+    Octaves {
+        count: 1,
+        part: 0.0,
+        lacunarity: 2.0,
+        diminish: 1.0,
+        seed,
+        period: period.max(0) as u32,
+    }
+}
+
+/// The one octave that a node's `seed` and `period` ask for.
+pub(crate) fn tiled_octave(lower: &Lower<'_, '_>, node: &Node) -> Octaves {
+    one_octave(lower.integer(node, "seed"), lower.integer(node, "period"))
+}
+
+/// A sum of octaves with the node's kernel.
+pub(crate) fn summed<'b>(lower: &mut Lower<'_, 'b>, node: &Node, octaves: Octaves) -> Bundle<'b> {
+    let kernel = Kernel::of(lower, node);
+    let extent = EXTENT * octaves.sd();
+    octaves_of(lower, node, (kernel, octaves), (0.25, extent))
+}
+
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
-    lower: |lower, node| {
-        let octaves = Octaves {
-            count: 1,
-            part: 0.0,
-            lacunarity: 2.0,
-            diminish: 1.0,
-            seed: lower.integer(node, "seed"),
-            period: lower.integer(node, "period").max(0) as u32,
-        };
-        let kernel = Kernel::of(lower, node);
-        octaves_of(lower, node, (kernel, octaves), (0.25, EXTENT))
-    },
+    lower: |lower, node| summed(lower, node, tiled_octave(lower, node)),
 };

@@ -1,12 +1,13 @@
 //! `noise3d`: lattice noise in space, filtered exactly for any footprint.
 
+use crate::noise::noise2d::tiled_octave;
 use crate::noise::source::{
     AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, scaled, tiling,
 };
 use crate::noise::sum::Octaves;
 use crate::noise::volume::{self, Kind};
-use mipless_codegen::NodeDef;
-use mipless_graph::{Category, Doc, InputView, NodeSpec, OutputType, Type};
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType, Type};
 
 /// max |CDF − Φ| of the quadrupole kernel and of Perlin's, over 4·10⁶ independent points.
 const DEVIATIONS: [f32; 2] = [0.002, 0.016];
@@ -60,21 +61,16 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "noise3d" } } }"#,
 };
 
+/// A sum of octaves in space with the node's kernel.
+pub(crate) fn summed<'b>(lower: &mut Lower<'_, 'b>, node: &Node, octaves: Octaves) -> Bundle<'b> {
+    let position = place(lower, node);
+    let kind = Kind::of(lower, node);
+    let unit = volume::filtered(lower, &position, kind, octaves);
+    scaled(lower, node, unit, (0.25, EXTENT * octaves.sd()))
+}
+
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
-    lower: |lower, node| {
-        let octaves = Octaves {
-            count: 1,
-            part: 0.0,
-            lacunarity: 2.0,
-            diminish: 1.0,
-            seed: lower.integer(node, "seed"),
-            period: lower.integer(node, "period").max(0) as u32,
-        };
-        let position = place(lower, node);
-        let kind = Kind::of(lower, node);
-        let unit = volume::filtered(lower, &position, kind, octaves);
-        scaled(lower, node, unit, (0.25, EXTENT))
-    },
+    lower: |lower, node| summed(lower, node, tiled_octave(lower, node)),
 };

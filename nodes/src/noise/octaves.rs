@@ -43,7 +43,7 @@ pub(crate) fn repeating(inputs: &dyn InputView, deviation: f32) -> Behaviour {
 }
 
 /// The octaves that a node's ports ask for, with its `period`.
-pub(crate) fn tiled_octaves(lower: &Lower<'_>, node: &Node) -> Octaves {
+pub(crate) fn tiled_octaves(lower: &Lower<'_, '_>, node: &Node) -> Octaves {
     Octaves {
         period: lower.integer(node, "period").max(0) as u32,
         ..octaves(lower, node)
@@ -51,7 +51,7 @@ pub(crate) fn tiled_octaves(lower: &Lower<'_>, node: &Node) -> Octaves {
 }
 
 /// The octaves that a node's ports ask for.
-pub(crate) fn octaves(lower: &Lower<'_>, node: &Node) -> Octaves {
+pub(crate) fn octaves(lower: &Lower<'_, '_>, node: &Node) -> Octaves {
     let octaves = lower.float(node, "octaves");
     Octaves {
         count: octaves as u32,

@@ -21,15 +21,15 @@ mod window;
 
 use super::field::{Field, Spread};
 use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
-use super::octave::Octave;
 use super::remainder::{remainder, share};
+use super::sum::Octave;
 use super::sum::{Octaves, parts};
 use super::window::{count, start};
 use energy::{Footprint, energies};
 use fit::{Fit, Shape};
 use grid::Grid;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
 
 /// ∫ w² = 181/231.
@@ -71,10 +71,10 @@ impl Kind {
     }
 
     /// The random numbers of a lattice point, as many as there are terms.
-    fn weights(self, b: &mut Builder, hash: Value) -> Vec<Value> {
+    fn weights(self, hash: Uint<'_>) -> Vec<Float<'_>> {
         match self {
-            Self::Gradient => compass(b, hash).to_vec(),
-            Self::Value => vec![signed(b, hash)],
+            Self::Gradient => compass(hash).to_vec(),
+            Self::Value => vec![signed(hash)],
         }
     }
 
@@ -130,15 +130,15 @@ impl Kind {
 
 /// The filtered sum of octaves at a position in cells of the first octave; unit variance of the
 /// first octave.
-pub(crate) fn filtered(
-    lower: &mut Lower<'_>,
-    position: &[Signal],
+pub(crate) fn filtered<'b>(
+    lower: &mut Lower<'_, 'b>,
+    position: &[Signal<'b>],
     kind: Kind,
     octaves: Octaves,
-    seed: Value,
-) -> Field {
+    seed: Uint<'b>,
+) -> Field<'b> {
     let mode = lower.mode();
-    let spread = Spread::of(lower.b(), position);
+    let spread = Spread::of(position);
     let Octaves {
         lacunarity,
         diminish,
@@ -147,16 +147,12 @@ pub(crate) fn filtered(
     let tiles = octaves.tiles();
     let name = kind.name();
     let key = format!("{name} {mode:?} {lacunarity} {diminish} {tiles}");
-    let octave = match mode {
-        Mode::Point => lower.function(&key, |module| point::octave(module, kind, octaves)),
-        _ => lower.function(&key, |module| filtered_octave(module, kind, mode, octaves)),
-    };
-    let mut captures = Vec::new();
-    if mode != Mode::Point {
-        captures.extend(spread.covariance);
-        captures.extend(spread.eigenvalues);
-    }
-    octaves.sum(lower, &octave, (position, seed), &captures, None)
+    let octave = lower.function(&key, |module| match mode {
+        Mode::Point => point::octave(module, kind, octaves),
+        _ => filtered_octave(module, kind, mode, octaves),
+    });
+    let captures = (mode != Mode::Point).then_some((spread.covariance, spread.eigenvalues));
+    octaves.sum(lower, &octave, (position, seed), captures, None)
 }
 
 /// One octave of the filtered noise, the body of a fold.
@@ -165,130 +161,97 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     let row = window::row(module, kind, mode, octaves.tiles());
     let parts = parts(mode);
     let doc = "One more octave of the filtered noise.";
-    let mut b = Builder::new(format!("{}_octave", kind.name()), doc);
-    b.param("index", mipless_codegen::ir::Type::U32);
-    let sums: Vec<Value> = NAMES[..parts]
+    let b = &Builder::new(format!("{}_octave", kind.name()), doc);
+    b.uint_param("index");
+    let sums: Vec<Float<'_>> = NAMES[..parts]
         .iter()
-        .map(|name| b.param_f32(*name))
+        .map(|name| b.float_param(*name))
         .collect();
-    let rest = mode.spreads().then(|| b.param_f32("rest"));
-    let state = Octave::declare(&mut b, octaves);
-    let covariance = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
-    let eigenvalues = ["s_major", "s_minor"].map(|name| b.param_f32(name));
+    let rest = mode.spreads().then(|| b.float_param("rest"));
+    let state = Octave::declare(b, octaves);
+    let covariance = Sym2(["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name)));
+    let eigenvalues = ["s_major", "s_minor"].map(|name| b.float_param(name));
 
     // The footprint in cells of this octave.
-    let area = b.square(state.scale);
-    let widest = b.f32(1e6);
-    let area = b.min(area, widest);
-    let covariance = covariance.map(|s| b.mul(s, area));
-    let [major, minor] = eigenvalues.map(|s| b.mul(s, area));
-    let determinant = b.mul(major, minor);
+    let area = state.scale.square().min(1e6);
+    let [major, minor] = eigenvalues.map(|s| s * area);
     let footprint = Footprint {
-        covariance,
-        determinant,
+        covariance: covariance * area,
+        determinant: major * minor,
     };
-    let energy = energies(&mut b, kind, &footprint);
-
-    // The octave fades to nothing before it is dropped.
+    let energy = energies(kind, &footprint);
     let width = kind.fit().width;
-    let window = Window::of(&mut b, width, &footprint, energy[0]);
-    let zero = b.f32(0.0);
-    let size = b.sqrt(major);
-    let by_window = share(&mut b, size, HANDOVER[0], HANDOVER[1]);
-    let one = b.f32(1.0);
-    let by_near = b.sub(one, by_window);
-    let (none, once) = (b.u32(0), b.u32(1));
+    let by_window = share(major.sqrt(), HANDOVER[0], HANDOVER[1]);
+    let by_near = 1.0 - by_window;
 
-    let is_near = b.lt(zero, by_near);
-    let turns = b.select(is_near, once, none);
-    let grid = Grid::of(&state).captures();
-    let mut captures = grid.clone();
-    captures.extend(state.fractions);
-    captures.extend(covariance);
-    let close = b.fold(&near, turns, &vec![zero; parts], &captures);
+    // Polynomials of the window.
+    let grid = Grid::of(&state);
+    let zeros = vec![b.float(0.0); parts];
+    let captures = (grid, state.fractions, footprint.covariance);
+    let turns = by_near.gt(0.0).select(1u32, 0u32);
+    let close = b.fold(&near, turns, zeros.clone(), captures);
 
-    let used = b.mul(by_window, window.fade);
-    let is_used = b.lt(zero, used);
-    let [points, rows] = count(&mut b, window.rows, window::COUNTS);
-    let rows = b.select(is_used, rows, none);
-    let start_y = start(&mut b, state.fractions[1], points);
-    let mut captures = vec![start_y, window.rows, window.columns, window.shear];
-    captures.extend(grid);
-    captures.extend(state.fractions);
-    captures.extend(window::captures(&window.shape));
-    let kernels = b.fold(&row, rows, &vec![zero; parts], &captures);
-    let wide = window.derivatives(&mut b, &kernels);
+    // Its fit. The octave fades to nothing before it is dropped.
+    let window = Window::of(width, &footprint, energy[0]);
+    let used = by_window * window.fade;
+    let (points, rows) = count(window.rows, window::COUNTS);
+    let rows = used.gt(0.0).select(rows, 0);
+    let start_y = start(state.fractions[1], points);
+    let reach = [start_y, window.rows, window.columns, window.shear];
+    let shape = window::captures(&window.shape);
+    let kernels = b.fold(&row, rows, zeros, (reach, grid, state.fractions, shape));
+    let wide = window.derivatives(&kernels);
 
     // Both parts, in units of the position.
-    let amplitude = b.scale(state.amplitude, kind.unit());
-    let root = b.sqrt(window.inverse);
-    let weight = b.mul(root, used);
-    let weight = b.scale(weight, kind.length());
-    let slope = b.mul(amplitude, state.scale);
-    let factors = [amplitude, slope, b.mul(amplitude, area)];
+    let amplitude = state.amplitude * kind.unit();
+    let weight = window.inverse.sqrt() * used * kind.length();
+    let factors = [amplitude, amplitude * state.scale, amplitude * area];
     for (i, (name, sum)) in NAMES.into_iter().zip(sums).enumerate() {
         let order = profile::DERIVATIVES[i].iter().sum::<usize>();
-        let finer = b.scale(weight, width.powi(-(order as i32)));
-        let part = b.dot(&[by_near, finer], &[close[i], wide[i]]);
-        let part = b.mul(part, factors[order]);
-        let sum = b.add(sum, part);
-        b.result(name, sum);
+        let finer = weight * width.powi(-(order as i32));
+        let part = by_near * close[i] + finer * wide[i];
+        b.result(name, sum + part * factors[order]);
     }
     if let Some(rest) = rest {
         // Narrow footprints do not fade.
-        let fade = b.add(by_near, used);
-        let left = remainder(&mut b, mode, energy, fade);
-        let power = b.square(state.amplitude);
-        let part = b.mul(power, left);
-        let rest = b.add(rest, part);
-        b.result("rest", rest);
+        let left = remainder(mode, energy, by_near + used);
+        b.result("rest", rest + state.amplitude.square() * left);
     }
-    state.advance(&mut b, octaves);
+    state.advance(b, octaves);
     b.finish(module)
 }
 
 /// The sum over kernels of the window's fit: how far it reaches (rows, and columns of the middle row, as
 /// reals), and what is left of it. What needs more than can be summed fades.
-struct Window {
-    shape: Shape<2>,
+struct Window<'b> {
+    shape: Shape<'b, 2>,
     /// 1/det T.
-    inverse: Value,
+    inverse: Float<'b>,
     /// T₁₂/T₂₂.
-    shear: Value,
-    rows: Value,
-    columns: Value,
-    fade: Value,
+    shear: Float<'b>,
+    rows: Float<'b>,
+    columns: Float<'b>,
+    fade: Float<'b>,
 }
 
-impl Window {
-    fn of(b: &mut Builder, width: f32, footprint: &Footprint, energy: Value) -> Self {
+impl<'b> Window<'b> {
+    fn of(width: f32, footprint: &Footprint<'b>, energy: Float<'b>) -> Self {
         let finer = width.powi(-2);
-        let covariance = footprint.covariance.map(|s| b.scale(s, finer));
-        let determinant = b.scale(footprint.determinant, finer * finer);
-        let (shape, inverse) = window::shape(b, covariance, determinant);
+        let covariance = footprint.covariance * finer;
+        let determinant = footprint.determinant * (finer * finer);
+        let (shape, inverse) = window::shape(covariance, determinant);
         let t_yy = shape.total[1][1];
         // R² = ln F + 9.66 in units of T.
-        let (tiny, one) = (b.f32(1e-12), b.f32(1.0));
-        let energy = b.max(energy, tiny);
-        let reach = b.ln(energy);
-        let reach = b.offset(reach, NEGLIGIBLE_LN);
-        let reach = b.max(reach, one);
-        let reach = b.sqrt(reach);
-        let reach = b.scale(reach, 2.0 * width);
-        let rows = b.sqrt(t_yy);
-        let rows = b.mul(rows, reach);
-        let ratio = b.mul(inverse, t_yy);
-        let ratio = b.div(one, ratio);
-        let columns = b.sqrt(ratio);
-        let columns = b.mul(columns, reach);
-        let needed = b.max(rows, columns);
-        let amplitude = b.sqrt(energy);
-        let by_amplitude = share(b, amplitude, FADE[0], FADE[1]);
+        let energy = energy.max(1e-12);
+        let reach = (energy.ln() + NEGLIGIBLE_LN).max(1.0).sqrt() * (2.0 * width);
+        let rows = t_yy.sqrt() * reach;
+        let columns = (1.0 / (inverse * t_yy)).sqrt() * reach;
         let most = window::COUNTS[1];
-        let by_reach = share(b, needed, most, most * 0.8);
+        let by_amplitude = share(energy.sqrt(), FADE[0], FADE[1]);
+        let by_reach = share(rows.max(columns), most, most * 0.8);
         Self {
-            fade: b.mul(by_amplitude, by_reach),
-            shear: b.div(covariance[1], t_yy),
+            fade: by_amplitude * by_reach,
+            shear: covariance[1] / t_yy,
             shape,
             inverse,
             rows,
@@ -297,17 +260,16 @@ impl Window {
     }
 
     /// M on the sums: derivatives in units of the fit's width.
-    fn derivatives(&self, b: &mut Builder, kernels: &[Value]) -> Vec<Value> {
-        let m = self.shape.inverse;
+    fn derivatives(&self, kernels: &[Float<'b>]) -> Vec<Float<'b>> {
+        let m = self.shape.inverse.map(Vec2);
         let mut all = vec![kernels[0]];
-        if let Some(sums) = kernels.get(1..3) {
-            all.extend(m.map(|row| b.dot(&row, sums)));
+        if let Some(&[x, y]) = kernels.get(1..3) {
+            all.extend(m.map(|row| row.dot(Vec2([x, y]))));
         }
         if let Some(&[h11, h12, h22]) = kernels.get(3..6) {
+            let hessian = Sym2([h11, h12, h22]);
             for (i, j) in [(0, 0), (0, 1), (1, 1)] {
-                let left = b.dot(&[h11, h12], &m[j]);
-                let right = b.dot(&[h12, h22], &m[j]);
-                all.push(b.dot(&m[i], &[left, right]));
+                all.push(m[i].dot(hessian.times(m[j])));
             }
         }
         all

@@ -14,7 +14,7 @@
 
 use super::field::{Field, Spread};
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Float, Sym2, Vec2, dot};
 use mipless_codegen::moments::{Mode, Signal};
 use std::f32::consts::{PI, TAU};
 
@@ -34,147 +34,83 @@ const ATAN: [f32; 7] = [
 const RATIONAL: [f32; 3] = [0.216_890_28, 0.150_680_1, 0.445_370_07];
 
 /// The angle of (x, y), in radians; 0 at the origin.
-fn angle(b: &mut Builder, x: Value, y: Value) -> Value {
-    let zero = b.f32(0.0);
-    let (ax, ay) = (b.abs(x), b.abs(y));
-    let (high, low) = (b.max(ax, ay), b.min(ax, ay));
-    let tiny = b.f32(1e-30);
-    let high = b.max(high, tiny);
-    let ratio = b.div(low, high);
-    let square = b.square(ratio);
-    let mut sum = b.f32(0.0);
-    for coefficient in ATAN.into_iter().rev() {
-        sum = b.mul(sum, square);
-        sum = b.offset(sum, coefficient);
-    }
-    let first = b.mul(sum, ratio);
-    let (quarter, half) = (b.f32(0.5 * PI), b.f32(PI));
-    let other = b.sub(quarter, first);
-    let steep = b.lt(ax, ay);
-    let first = b.select(steep, other, first);
-    let other = b.sub(half, first);
-    let left = b.lt(x, zero);
-    let first = b.select(left, other, first);
-    let other = b.neg(first);
-    let below = b.lt(y, zero);
-    b.select(below, other, first)
+fn angle<'b>(x: Float<'b>, y: Float<'b>) -> Float<'b> {
+    let (ax, ay) = (x.abs(), y.abs());
+    let ratio = ax.min(ay) / ax.max(ay).max(1e-30);
+    let square = ratio.square();
+    let polynomial = (ATAN.iter().rev()).fold(x.literal(0.0), |sum, &c| sum * square + c);
+    let octant = polynomial * ratio;
+    let quadrant = ax.lt(ay).select(0.5 * PI - octant, octant);
+    let half = x.lt(0.0).select(PI - quadrant, quadrant);
+    y.lt(0.0).select(-half, half)
 }
 
 /// vᵀΣv.
-fn form(b: &mut Builder, v: [Value; 2], s: [Value; 3]) -> Value {
-    let left = b.dot(&[s[0], s[1]], &v);
-    let right = b.dot(&[s[1], s[2]], &v);
-    b.dot(&v, &[left, right])
+fn form<'b>(v: Vec2<'b>, s: Sym2<'b>) -> Float<'b> {
+    v.dot(s.times(v))
 }
 
 /// ½ tr (HΣ)².
-fn second(b: &mut Builder, h: [Value; 3], s: [Value; 3]) -> Value {
-    let xx = b.dot(&[h[0], h[1]], &[s[0], s[1]]);
-    let xy = b.dot(&[h[0], h[1]], &[s[1], s[2]]);
-    let yx = b.dot(&[h[1], h[2]], &[s[0], s[1]]);
-    let yy = b.dot(&[h[1], h[2]], &[s[1], s[2]]);
-    let squares = b.dot(&[xx, yy], &[xx, yy]);
-    let half = b.scale(squares, 0.5);
-    let cross = b.mul(xy, yx);
-    b.add(half, cross)
+fn second<'b>(h: Sym2<'b>, s: Sym2<'b>) -> Float<'b> {
+    let ([h11, h12, h22], [s11, s12, s22]) = (h.0, s.0);
+    let xx = dot([h11, h12], [s11, s12]);
+    let xy = dot([h11, h12], [s12, s22]);
+    let yx = dot([h12, h22], [s11, s12]);
+    let yy = dot([h12, h22], [s12, s22]);
+    (xx * xx + yy * yy) * 0.5 + xy * yx
 }
 
 /// −2 ln R(s) with s = power/variance.
-fn scatter(b: &mut Builder, power: Value, variance: Value) -> Value {
-    let s = b.div(power, variance);
-    let least = b.f32(1e-30);
-    let s = b.max(s, least);
-    let bend = b.scale(s, 0.5 * RATIONAL[1]);
-    let numerator = b.offset(bend, RATIONAL[0]);
-    let numerator = b.mul(numerator, s);
-    let numerator = b.offset(numerator, 4.0 / PI);
-    let bend = b.scale(s, RATIONAL[1]);
-    let denominator = b.offset(bend, RATIONAL[2]);
-    let denominator = b.mul(denominator, s);
-    let denominator = b.offset(denominator, 1.0);
-    let c = b.div(numerator, denominator);
-    let x = b.div(c, s);
+fn scatter<'b>(power: Float<'b>, variance: Float<'b>) -> Float<'b> {
+    let s = (power / variance).max(1e-30);
+    let [linear, bend, below] = RATIONAL;
+    let numerator = (s * (0.5 * bend) + linear) * s + 4.0 / PI;
+    let denominator = (s * bend + below) * s + 1.0;
+    let x = numerator / denominator / s;
     // ln(1 + x) of a small x is x − x²/2.
-    let raised = b.offset(x, 1.0);
-    let log = b.ln(raised);
-    let square = b.square(x);
-    let half = b.scale(square, 0.5);
-    let small = b.sub(x, half);
-    let limit = b.f32(1e-3);
-    let near = b.lt(x, limit);
-    b.select(near, small, log)
+    let small = x - x.square() * 0.5;
+    x.lt(1e-3).select(small, (x + 1.0).ln())
 }
 
 /// The phase in turns at a position, given the real and the imaginary field.
-pub(crate) fn phase(lower: &mut Lower<'_>, re: &Field, im: &Field, position: &[Signal]) -> Signal {
-    let mode = lower.mode();
-    let spread = Spread::of(lower.b(), position);
-    let s = spread.covariance;
-    let b = lower.b();
-    let zero = b.f32(0.0);
-    let turns = angle(b, re.mean, im.mean);
+pub(crate) fn phase<'b>(
+    lower: &mut Lower<'_, 'b>,
+    re: &Field<'b>,
+    im: &Field<'b>,
+    position: &[Signal<'b>],
+) -> Signal<'b> {
+    let (mode, zero) = (lower.mode(), lower.b().float(0.0));
     let mut field = Field {
-        mean: b.scale(turns, 1.0 / TAU),
-        gradient: [zero; 2],
-        hessian: [zero; 3],
+        mean: angle(re.mean, im.mean) * (1.0 / TAU),
+        gradient: Vec2::splat(zero),
+        hessian: Sym2::splat(zero),
         rest: zero,
     };
     if mode.spreads() {
-        let power = b.dot(&[re.mean, im.mean], &[re.mean, im.mean]);
-        let tiny = b.f32(1e-12);
-        let guarded = b.max(power, tiny);
-        let one = b.f32(1.0);
-        let inverse = b.div(one, guarded);
+        let s = Spread::of(position).covariance;
+        let power = re.mean * re.mean + im.mean * im.mean;
+        let inverse = 1.0 / power.max(1e-12);
         // ∇φ, and ∇|m|²/2|m|.
-        let mut turning = [zero; 2];
-        let mut growing = [zero; 2];
-        for i in 0..2 {
-            let (p, q) = (re.gradient[i], im.gradient[i]);
-            let (left, right) = (b.mul(re.mean, q), b.mul(im.mean, p));
-            let across = b.sub(left, right);
-            turning[i] = b.mul(across, inverse);
-            let along = b.dot(&[re.mean, im.mean], &[p, q]);
-            let root = b.sqrt(inverse);
-            growing[i] = b.mul(along, root);
-        }
-        let q = form(b, turning, s);
-        let limit = b.f32(30.0);
-        let q = b.min(q, limit);
+        let turning = (im.gradient * re.mean - re.gradient * im.mean) * inverse;
+        let growing = (re.gradient * re.mean + im.gradient * im.mean) * inverse.sqrt();
+        let q = form(turning, s).min(30.0);
+
         // 2σ² = E|Z|² − |m|² e^q, of which |m|² (1 + q) is the mean and the turning.
-        let radial = form(b, growing, s);
-        let mut rest = b.add(re.rest, im.rest);
-        rest = b.add(rest, radial);
+        let mut rest = re.rest + im.rest + form(growing, s);
         if mode == Mode::Quad {
             for h in [re.hessian, im.hessian] {
-                let part = second(b, h, s);
-                rest = b.add(rest, part);
+                rest += second(h, s);
             }
         }
-        let grown = b.exp(q);
-        let beyond = b.sub(grown, one);
-        let beyond = b.sub(beyond, q);
-        let square = b.square(q);
-        let third = b.scale(q, 1.0 / 3.0);
-        let third = b.offset(third, 1.0);
-        let series = b.mul(square, third);
-        let series = b.scale(series, 0.5);
-        let small = b.f32(0.05);
-        let near = b.lt(q, small);
-        let beyond = b.select(near, series, beyond);
-        let beyond = b.mul(beyond, power);
-        let variance = b.sub(rest, beyond);
-        let variance = b.max(variance, zero);
-        let coherent = b.mul(power, grown);
-        let slopes = b.mul(power, q);
-        let total = b.add(power, slopes);
-        let total = b.add(total, rest);
-        let coherent = b.min(coherent, total);
-        let floor = b.scale(coherent, 1e-8);
-        let variance = b.add(variance, floor);
-        let variance = b.offset(variance, 1e-30);
-        let scattered = scatter(b, coherent, variance);
-        field.rest = b.scale(scattered, 1.0 / (TAU * TAU));
-        field.gradient = turning.map(|t| b.scale(t, 1.0 / TAU));
+        let grown = q.exp();
+        let series = q.square() * (q * (1.0 / 3.0) + 1.0) * 0.5;
+        let beyond = q.lt(0.05).select(series, grown - 1.0 - q) * power;
+        let variance = (rest - beyond).max(0.0);
+        let coherent = (power * grown).min(power + power * q + rest);
+        let variance = variance + coherent * 1e-8 + 1e-30;
+
+        field.rest = scatter(coherent, variance) * (1.0 / (TAU * TAU));
+        field.gradient = turning * (1.0 / TAU);
     }
     field.at(lower, position)
 }
@@ -183,13 +119,11 @@ pub(crate) fn phase(lower: &mut Lower<'_>, re: &Field, im: &Field, position: &[S
 mod tests {
     use super::*;
     use mipless_codegen::cpu::{Evaluator, Input, Scratch};
-    use mipless_codegen::ir::Module;
+    use mipless_codegen::ir::{Builder, Module};
 
-    fn evaluated(build: impl Fn(&mut Builder, Value, Value) -> Value, x: f32, y: f32) -> f64 {
-        let mut b = Builder::new("f", "A test.");
-        let (p, q) = (b.param_f32("x"), b.param_f32("y"));
-        let out = build(&mut b, p, q);
-        b.result("out", out);
+    fn evaluated(build: impl for<'c> Fn(Float<'c>, Float<'c>) -> Float<'c>, x: f32, y: f32) -> f64 {
+        let b = &Builder::new("f", "A test.");
+        b.result("out", build(b.float_param("x"), b.float_param("y")));
         let mut module = Module::default();
         b.finish(&mut module);
         let mut outputs = Vec::new();

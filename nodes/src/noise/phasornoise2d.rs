@@ -1,13 +1,12 @@
 //! `phasornoise2d`: a profile of the phase of a complex Gabor field.
 
-use crate::componentwise::transfer;
 use crate::noise::gabor;
 use crate::noise::gabornoise2d::{
     ANISOTROPY, BANDWIDTH, FREQUENCY, IMPULSES, ORIENTATION, PERIOD, cells, described, orientation,
 };
 use crate::noise::phasor::phase;
 use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD};
-use mipless_codegen::moments::{LinearWave, Signal, Sine, SquareWave};
+use mipless_codegen::moments::{LinearWave, Sine, SquareWave};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -90,43 +89,26 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// a X + c.
-fn affine(lower: &mut Lower<'_>, x: &Signal, a: f32, c: f32) -> Signal {
-    let b = lower.b();
-    let (a, c) = (b.f32(a), b.f32(c));
-    x.scale(b, a).offset(b, c)
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let gabor = described(lower, node);
     let position = cells(lower, node, gabor);
     let orientation = orientation(lower, node);
     let fields = gabor::filtered(lower, &position, gabor, orientation, true);
     let phase = phase(lower, &fields[0], &fields[1], &position);
-    let wave = match lower.choice(node, "profile") {
+    let profile = lower.choice(node, "profile");
+    let algebra = &mut lower.algebra;
+    let wave = match profile {
         "square" => {
-            let width = lower.b().f32(0.5);
-            let wave = transfer(lower, &phase, &SquareWave { width });
-            affine(lower, &wave, 2.0, -1.0)
+            let width = algebra.b.float(0.5);
+            (algebra.transfer(&phase, &SquareWave { width }) * 2.0).offset(-1.0)
         }
         "triangle" => {
             let corners = [(0.25, 1.0), (0.75, -1.0)];
-            transfer(lower, &phase, &LinearWave::through(&corners))
+            algebra.transfer(&phase, &LinearWave::through(&corners))
         }
-        "sawtooth" => {
-            let wave = transfer(lower, &phase, &LinearWave::sawtooth());
-            affine(lower, &wave, 2.0, -1.0)
-        }
-        _ => {
-            let radians = affine(lower, &phase, std::f32::consts::TAU, 0.0);
-            transfer(lower, &radians, &Sine { phase: 0.0 })
-        }
+        "sawtooth" => (algebra.transfer(&phase, &LinearWave::sawtooth()) * 2.0).offset(-1.0),
+        _ => algebra.transfer(&(phase * std::f32::consts::TAU), &Sine { phase: 0.0 }),
     };
-    let amplitude = lower.signal(node, "amplitude");
-    let pivot = lower.signal(node, "pivot");
-    let b = lower.b();
-    let half = b.f32(0.5);
-    let amplitude = amplitude.scale(b, half);
-    let scaled = lower.algebra.product(&wave, &amplitude);
-    vec![scaled.add(lower.b(), &pivot)]
+    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+    vec![lower.algebra.product(&wave, &(amplitude * 0.5)) + pivot]
 }

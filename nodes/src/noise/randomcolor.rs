@@ -1,11 +1,11 @@
 //! `randomcolor`: a random colour for each number.
 
 use crate::color::hsv::to_rgb;
-use crate::noise::cell::line::{Ensemble, Line, filtered};
+use crate::noise::cell::line::{Ensemble, Line, filtered, pairs};
 use crate::noise::cell::{VARIANCE, lattice_seed, number};
 use crate::noise::randomfloat::{IN, place};
 use crate::noise::source::SEED;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type as Scalar, Value};
+use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
@@ -80,89 +80,70 @@ const BOUNDS: [&str; 6] = [
 /// How many hues stand for all.
 const HUES: u32 = 32;
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let place = place(lower, node);
     let seed = lower.integer(node, "seed");
     let bounds = BOUNDS.map(|port| lower.number(node, port));
     let line = Line {
         key: format!("randomcolor {seed}"),
         parameters: bounds.to_vec(),
-        numbers: &|b, cell, bounds| {
-            let seed = lattice_seed(b, seed, 0x1f83_d9ab);
+        numbers: &|cell, bounds| {
+            let seed = lattice_seed(cell.builder(), seed, 0x1f83_d9ab);
             let hsv = [0, 1, 2].map(|i| {
-                let row = b.i32(i as i32);
-                let (share, _) = number(b, cell, row, seed, 0);
-                between(b, share, [bounds[2 * i], bounds[2 * i + 1]])
+                let share = number([cell, cell.literal(i as i32)], seed, 0);
+                between(share, [bounds[2 * i], bounds[2 * i + 1]])
             });
-            to_rgb(b, hsv).to_vec()
+            to_rgb(hsv).to_vec()
         },
         ensemble: &|lower, wanted| ensemble(lower, &bounds, wanted),
     };
     let colors = filtered(lower, &place, &line);
-    let b = lower.b();
-    let within = bounds[2..]
-        .iter()
-        .all(|&v| b.as_constant(v).is_some_and(|x| (0.0..=1.0).contains(&x)));
-    (colors.into_iter())
-        .map(|channel| {
-            if within {
-                channel.with_range([0.0, 1.0])
-            } else {
-                channel
-            }
-        })
-        .collect()
+    let known = |bound: Float<'b>| {
+        bound
+            .as_constant()
+            .is_some_and(|x| (0.0..=1.0).contains(&x))
+    };
+    if !bounds[2..].iter().all(|&bound| known(bound)) {
+        return colors;
+    }
+    let limited = colors
+        .into_iter()
+        .map(|channel| channel.with_range([0.0, 1.0]));
+    limited.collect()
 }
 
 /// low + (high − low) · share.
-fn between(b: &mut Builder, share: Value, [low, high]: [Value; 2]) -> Value {
-    let span = b.sub(high, low);
-    let part = b.mul(span, share);
-    b.add(low, part)
+fn between<'b>(share: impl Operand<'b, f32>, [low, high]: [Float<'b>; 2]) -> Float<'b> {
+    low + (high - low) * share
 }
 
 /// The channels over all cells.
-fn ensemble(lower: &mut Lower<'_>, bounds: &[Value; 6], wanted: Value) -> Ensemble {
-    let hue = lower.function("hues of randomcolor", one_more_hue);
+fn ensemble<'b>(
+    lower: &mut Lower<'_, 'b>,
+    bounds: &[Float<'b>; 6],
+    wanted: Bool<'b>,
+) -> Ensemble<'b> {
     let b = lower.b();
-    let (zero, none, all) = (b.f32(0.0), b.u32(0), b.u32(HUES));
-    let count = b.select(wanted, all, none);
-    let sums = b.fold(&hue, count, &[zero; SUMS.len()], &bounds[..2]);
-    let moments: Vec<Value> = (sums.into_iter())
-        .map(|sum| b.scale(sum, 1.0 / HUES as f32))
-        .collect();
-    let (full, products) = moments.split_at(3);
+    let hue = lower.function("hues of randomcolor", one_more_hue);
+    let before = [b.float(0.0); SUMS.len()];
+    let sums = b.fold(&hue, wanted.select(HUES, 0u32), before, &bounds[..2]);
+    let averages = sums.map(|sum| sum * (1.0 / HUES as f32));
+    let (full, products) = averages.split_at(3);
     // The mean and the mean square of a uniform number.
     let [[s1, s2], [v1, v2]] = [2, 4].map(|i| {
-        let half = b.f32(0.5);
-        let mean = between(b, half, [bounds[i], bounds[i + 1]]);
-        let span = b.sub(bounds[i + 1], bounds[i]);
-        let variance = b.square(span);
-        let variance = b.scale(variance, VARIANCE);
-        let square = b.square(mean);
-        [mean, b.add(square, variance)]
+        let mean = between(0.5, [bounds[i], bounds[i + 1]]);
+        let variance = (bounds[i + 1] - bounds[i]).square() * VARIANCE;
+        [mean, mean.square() + variance]
     });
     // A channel is v (1 − s + s c), c being that of the full hue.
-    let grey = b.neg(s1);
-    let grey = b.offset(grey, 1.0);
-    let means: Vec<Value> = (full.iter())
-        .map(|&c| {
-            let part = b.mul(s1, c);
-            let sum = b.add(grey, part);
-            b.mul(v1, sum)
-        })
-        .collect();
-    let mixed = b.sub(s1, s2);
-    let greys = b.sub(grey, mixed);
-    let pairs = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
-    let covariance = (pairs.into_iter().zip(products))
+    let grey = 1.0 - s1;
+    let means: Vec<Float<'b>> = full.iter().map(|&c| v1 * (grey + s1 * c)).collect();
+    let mixed = s1 - s2;
+    let greys = grey - mixed;
+    let covariance = (pairs(3).zip(products))
         .map(|((i, k), &product)| {
-            let both = b.add(full[i], full[k]);
-            let part = b.dot(&[mixed, s2], &[both, product]);
-            let second = b.add(greys, part);
-            let second = b.mul(v2, second);
-            let square = b.mul(means[i], means[k]);
-            b.sub(second, square)
+            let colored = mixed * (full[i] + full[k]) + s2 * product;
+            v2 * (greys + colored) - means[i] * means[k]
         })
         .collect();
     Ensemble { means, covariance }
@@ -183,29 +164,16 @@ const SUMS: [&str; 9] = [
 
 /// One more full hue, the body of a fold.
 fn one_more_hue(module: &mut Module) -> FunctionRef {
-    let mut b = Builder::new("random_hue", "One more of the hues of random colours.");
-    let index = b.param("index", Scalar::U32);
-    let state = SUMS.map(|name| b.param_f32(name));
-    let bounds = ["hue_low", "hue_high"].map(|name| b.param_f32(name));
-    let number = b.float_u(index);
-    let number = b.offset(number, 0.5);
-    let share = b.scale(number, 1.0 / HUES as f32);
-    let hue = between(&mut b, share, bounds);
-    let one = b.f32(1.0);
-    let [red, green, blue] = to_rgb(&mut b, [hue, one, one]);
-    let pairs = [
-        (red, red),
-        (green, red),
-        (green, green),
-        (blue, red),
-        (blue, green),
-        (blue, blue),
-    ];
-    let products = pairs.map(|(p, q)| b.mul(p, q));
-    let parts = [red, green, blue].into_iter().chain(products);
-    for ((name, sum), part) in SUMS.into_iter().zip(state).zip(parts) {
-        let sum = b.add(sum, part);
-        b.result(name, sum);
+    let b = &Builder::new("random_hue", "One more of the hues of random colours.");
+    let index = b.uint_param("index");
+    let sums = SUMS.map(|name| b.float_param(name));
+    let bounds = ["hue_low", "hue_high"].map(|name| b.float_param(name));
+    let hue = between((index.to_float() + 0.5) * (1.0 / HUES as f32), bounds);
+    let color = to_rgb([hue, b.float(1.0), b.float(1.0)]);
+    let products = pairs(3).map(|(i, k)| color[i] * color[k]);
+    let parts = color.into_iter().chain(products);
+    for ((name, sum), part) in SUMS.into_iter().zip(sums).zip(parts) {
+        b.result(name, sum + part);
     }
     b.finish(module)
 }

@@ -79,39 +79,32 @@ pub(crate) const IN: PortSpec = PortSpec::new(
 .range(Range::soft(0.0, 1.0));
 
 /// `in` in cells, of which multiples of 1/4096 are the middles.
-pub(crate) fn place(lower: &mut Lower<'_>, node: &Node) -> Signal {
+pub(crate) fn place<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Signal<'b> {
     let number = exposed(lower, node, "in").swap_remove(0);
-    let b = lower.b();
-    let (cells, half) = (b.f32(4096.0), b.f32(0.5));
-    number.scale(b, cells).offset(b, half)
+    (number * 4096.0).offset(0.5)
 }
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let place = place(lower, node);
     let seed = lower.integer(node, "seed");
     let line = Line {
         key: format!("randomfloat {seed}"),
         parameters: Vec::new(),
-        numbers: &|b, cell, _| {
-            let seed = lattice_seed(b, seed, 0x9b05_688c);
-            let row = b.i32(0);
-            vec![number(b, cell, row, seed, 0).0]
+        numbers: &|cell, _| {
+            let seed = lattice_seed(cell.builder(), seed, 0x9b05_688c);
+            vec![number([cell, cell.literal(0)], seed, 0)]
         },
-        ensemble: &|lower, _| {
-            let b = lower.b();
-            Ensemble {
-                means: vec![b.f32(0.5)],
-                covariance: vec![b.f32(VARIANCE)],
-            }
+        ensemble: &|lower, _| Ensemble {
+            means: vec![lower.b().float(0.5)],
+            covariance: vec![lower.b().float(VARIANCE)],
         },
     };
     let unit = filtered(lower, &place, &line).swap_remove(0);
     let unit = unit.with_range([0.0, 1.0]);
     let [min, max] = ["min", "max"].map(|port| lower.signal(node, port));
-    let span = max.sub(lower.b(), &min);
-    let part = product(lower, &span, &unit);
-    vec![sum(lower, &part, &min)]
+    let part = product(lower, &(max - &min), &unit);
+    vec![sum(&part, &min)]
 }

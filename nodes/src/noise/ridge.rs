@@ -1,7 +1,7 @@
 //! The ridge of a noise, (offset − |X|/4)², and what Musgrave's recursion shares between octaves.
 
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Gaussian, Moments, Normal, Signal, Symbol, Transfer};
 
 /// The standard deviation of the noise under the ridge.
@@ -9,75 +9,48 @@ const SD: f32 = 0.25;
 
 /// T(x) = (offset − |x|/4)².
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ridge {
-    pub(crate) offset: Value,
+pub(crate) struct Ridge<'b> {
+    pub(crate) offset: Float<'b>,
 }
 
-impl Transfer for Ridge {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let magnitude = b.abs(x);
-        let magnitude = b.scale(magnitude, SD);
-        let ridge = b.sub(self.offset, magnitude);
-        b.square(ridge)
+impl<'b> Transfer<'b> for Ridge<'b> {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        (self.offset - x.abs() * SD).square()
     }
 
     /// T = o² − ½o|x| + x²/16, of which both parts have closed forms. With z = m/σ: E|x| =
     /// m(P − Q) + 2σφ. The distortion is the square of the second Hermite coefficient,
     /// −½o√2 φσ + √2 v/16, and what |x| has beyond its own, ¼o² 2v(2d(z) − φ²).
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let normal = Normal::at(b, x.mean, x.inverse_sd);
-        let half = b.scale(self.offset, 2.0 * SD);
-        let rise = b.sub(normal.below, normal.above);
-        let bell = b.mul(normal.density, x.sd);
-        let odd = b.mul(x.mean, rise);
-        let twice = b.add(bell, bell);
-        let magnitude = b.add(odd, twice);
-        let square = b.square(x.mean);
-        let square = b.add(square, x.variance);
-        let square = b.scale(square, SD * SD);
-        let whole = b.square(self.offset);
-        let part = b.mul(half, magnitude);
-        let mean = b.sub(whole, part);
-        let mean = b.add(mean, square);
-        let zero = b.f32(0.0);
-        let mean = b.max(mean, zero);
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let normal = Normal::at(x.mean, x.inverse_sd);
+        let half = self.offset * (2.0 * SD);
+        let rise = normal.below - normal.above;
+        let bell = normal.density * x.sd;
 
-        let fall = b.mul(half, rise);
-        let climb = b.scale(x.mean, 2.0 * SD * SD);
-        let slope = b.sub(climb, fall);
-        let sharp = b.mul(normal.density, x.inverse_sd);
-        let sharp = b.mul(half, sharp);
-        let sharp = b.add(sharp, sharp);
-        let flat = b.f32(2.0 * SD * SD);
-        let curvature = b.sub(flat, sharp);
-        let tilted = b.mul(sharp, normal.z);
-        let third = b.mul(tilted, x.inverse_sd);
+        // The mean and its derivatives.
+        let magnitude = x.mean * rise + (bell + bell);
+        let square = (x.mean.square() + x.variance) * (SD * SD);
+        let mean = self.offset.square() - half * magnitude + square;
+        let slope = x.mean * (2.0 * SD * SD) - half * rise;
+        let sharp = half * (normal.density * x.inverse_sd);
+        let sharp = sharp + sharp;
 
-        let dip = b.mul(half, bell);
-        let bowl = b.scale(x.variance, SD * SD);
-        let second = b.sub(bowl, dip);
-        let second = b.square(second);
-        let second = b.add(second, second);
-        let kink = normal.hinge_distortion(b);
-        let kink = b.add(kink, kink);
-        let square = b.square(normal.density);
-        let kink = b.sub(kink, square);
-        let kink = b.max(kink, zero);
-        let strength = b.square(half);
-        let strength = b.mul(strength, x.variance);
-        let kink = b.mul(strength, kink);
-        let kink = b.add(kink, kink);
+        // The distortion.
+        let second = (x.variance * (SD * SD) - half * bell).square();
+        let kink = normal.hinge_distortion();
+        let kink = (kink + kink - normal.density.square()).max(0.0);
+        let kink = half.square() * x.variance * kink;
         Moments {
-            mean,
+            mean: mean.max(0.0),
             slope,
-            curvature,
-            third,
-            distortion: b.add(second, kink),
+            curvature: 2.0 * SD * SD - sharp,
+            third: sharp * normal.z * x.inverse_sd,
+            distortion: (second + second) + (kink + kink),
         }
     }
 
-    fn range(&self, b: &Builder, [low, high]: [f32; 2]) -> [f32; 2] {
-        let Some(offset) = b.as_constant(self.offset) else {
+    fn range(&self, [low, high]: [f32; 2]) -> [f32; 2] {
+        let Some(offset) = self.offset.as_constant() else {
             return [0.0, f32::INFINITY];
         };
         let farthest = low.abs().max(high.abs()) * SD;
@@ -98,35 +71,31 @@ impl Transfer for Ridge {
 
 /// Writes what `x` and `y` share beyond the footprint's own coordinates, by symbols from `first` on
 /// and private parts, with a single symbol: variances and the covariance stay.
-pub(crate) fn couple(lower: &mut Lower<'_>, first: Symbol, x: &mut Signal, y: &mut Signal) {
+pub(crate) fn couple<'b>(
+    lower: &mut Lower<'_, 'b>,
+    first: Symbol,
+    x: &mut Signal<'b>,
+    y: &mut Signal<'b>,
+) {
     let symbol = lower.algebra.fresh_symbol();
-    let b = lower.b();
-    let zero = b.f32(0.0);
-    let mut common = zero;
-    for &(known, c) in x.shared.iter().filter(|&&(known, _)| known >= first) {
-        if let Some(d) = y.coefficient(known) {
-            let product = b.mul(c, d);
-            common = b.add(common, product);
-        }
-    }
+    let fresh = x.shared.iter().filter(|&&(known, _)| known >= first);
+    let products = fresh.filter_map(|&(known, c)| Some(c * y.coefficient(known)?));
+    let common = lower.b().sum(products);
     for signal in [&mut *x, &mut *y] {
-        settle(b, first, signal);
+        settle(first, signal);
     }
     // y is the symbol; x has its share of it, and keeps the rest.
-    let raised = b.offset(y.private, 1e-20);
-    let sd = b.sqrt(raised);
-    let share = b.div(common, sd);
-    let square = b.square(share);
-    let rest = b.sub(x.private, square);
-    x.private = b.max(rest, zero);
-    y.private = zero;
+    let sd = (y.private + 1e-20).sqrt();
+    let share = common / sd;
+    x.private = (x.private - share.square()).max(0.0);
+    y.private = lower.b().float(0.0);
     x.shared.push((symbol, share));
     y.shared.push((symbol, sd));
 }
 
 /// Folds the symbols from `first` on into the private variance.
-pub(crate) fn settle(b: &mut Builder, first: Symbol, signal: &mut Signal) {
+pub(crate) fn settle(first: Symbol, signal: &mut Signal<'_>) {
     while let Some(&(symbol, _)) = signal.shared.last().filter(|&&(known, _)| known >= first) {
-        signal.retire(b, symbol);
+        signal.retire(symbol);
     }
 }

@@ -89,40 +89,32 @@ pub(crate) const DEF: NodeDef = NodeDef {
     lower: |lower, node| {
         let position = position(lower, node);
         let layers = layers(lower, node, position);
-        let offset = lower.number(node, "offset");
-        let gain = lower.number(node, "gain");
+        let [offset, gain] = ["offset", "gain"].map(|port| lower.number(node, port));
         let b = lower.b();
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
         let ridge = Ridge { offset };
-        let weight = Piecewise::clamp(b, zero, one);
+        let weight = Piecewise::clamp(b.float(0.0), b.float(1.0));
         // What an octave shares with the one before is carried by symbols, whoever reads the node.
         let shares = std::mem::replace(&mut lower.algebra.shares, true);
         let first = lower.algebra.next_symbol();
-        let mut sum = Signal::constant(lower.b(), 0.0);
-        let mut before: Option<Signal> = None;
+        let mut sum = Signal::constant(b, 0.0);
+        let mut before: Option<Signal<'_>> = None;
         for layer in &layers {
             let mut octave = lower.algebra.transfer(&layer.noise, &ridge);
             if let Some(before) = before {
-                let strength = before.scale(lower.b(), gain);
-                let weight = lower.algebra.transfer(&strength, &weight);
+                let weight = lower.algebra.transfer(&(before * gain), &weight);
                 octave = lower.algebra.product(&octave, &weight);
             }
             octave = published(lower, octave);
-            let b = lower.b();
-            let amplitude = b.f32(layer.amplitude * layer.share);
-            let part = octave.scale(b, amplitude);
-            sum = sum.add(b, &part);
+            sum = sum + &octave * (layer.amplitude * layer.share);
             if lower.mode().spreads() {
                 couple(lower, first, &mut sum, &mut octave);
             }
             before = Some(octave);
         }
         lower.algebra.shares = shares;
-        settle(lower.b(), first, &mut sum);
+        settle(first, &mut sum);
         let sum = published(lower, sum);
-        let amplitude = lower.signal(node, "amplitude");
-        let pivot = lower.signal(node, "pivot");
-        let scaled = lower.algebra.product(&sum, &amplitude);
-        vec![scaled.add(lower.b(), &pivot)]
+        let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+        vec![lower.algebra.product(&sum, &amplitude) + pivot]
     },
 };

@@ -110,16 +110,16 @@ pub(crate) const POSITION: PortSpec = PortSpec::new(
 .unit("units of space");
 
 /// position · frequency.
-pub(crate) fn place(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
+pub(crate) fn place<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Vec<Signal<'b>> {
     scaled_by_frequency(lower, node, "position")
 }
 
 /// texcoord · frequency.
-pub(crate) fn position(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
+pub(crate) fn position<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Vec<Signal<'b>> {
     scaled_by_frequency(lower, node, "texcoord")
 }
 
-fn scaled_by_frequency(lower: &mut Lower<'_>, node: &Node, port: &str) -> Vec<Signal> {
+fn scaled_by_frequency<'b>(lower: &mut Lower<'_, 'b>, node: &Node, port: &str) -> Vec<Signal<'b>> {
     let frequency = lower.signal(node, "frequency");
     (lower.bundle(node, port).iter())
         .map(|axis| lower.algebra.product(axis, &frequency))
@@ -131,27 +131,25 @@ pub(crate) const EXTENT: f32 = 5.0;
 
 /// A sum of octaves of a lattice as the node's output: pivot + amplitude · `factor` · X, with |X| at
 /// most `extent`.
-pub(crate) fn octaves_of(
-    lower: &mut Lower<'_>,
+pub(crate) fn octaves_of<'b>(
+    lower: &mut Lower<'_, 'b>,
     node: &Node,
     (kernel, octaves): (Kernel, Octaves),
     (factor, extent): (f32, f32),
-) -> Vec<Signal> {
+) -> Vec<Signal<'b>> {
     let position = position(lower, node);
     kernel.report(lower, &position, octaves);
     if lower.only_measures() {
         return vec![Signal::constant(lower.b(), 0.0)];
     }
     let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
-    let b = lower.b();
-    if !(amplitude.is_certain(b) && pivot.is_certain(b)) {
-        let shape = Affine::unit(b);
+    if !(amplitude.is_certain() && pivot.is_certain()) {
+        let shape = Affine::unit(lower.b());
         let unit = kernel.signal(lower, &position, octaves, shape);
         return scaled(lower, node, unit, (factor, extent));
     }
-    let factor = b.f32(factor);
-    let amplitude = amplitude.scale(b, factor);
-    let extent = match b.as_constant(amplitude.mean) {
+    let amplitude = amplitude * factor;
+    let extent = match amplitude.mean.as_constant() {
         Some(amplitude) => extent * amplitude.abs(),
         None => f32::INFINITY,
     };
@@ -165,31 +163,26 @@ pub(crate) fn octaves_of(
 }
 
 /// The field of this standard deviation as a signal: pivot + amplitude/4 · X.
-pub(crate) fn shaped(
-    lower: &mut Lower<'_>,
+pub(crate) fn shaped<'b>(
+    lower: &mut Lower<'_, 'b>,
     node: &Node,
-    field: &Field,
+    field: &Field<'b>,
     sd: f32,
-    position: &[Signal],
-) -> Vec<Signal> {
+    position: &[Signal<'b>],
+) -> Vec<Signal<'b>> {
     let unit = field.at(lower, position);
     scaled(lower, node, unit, (0.25, EXTENT * sd))
 }
 
 /// A noise X of variance 1 as the node's output: pivot + amplitude · `factor` · X, with |X| at most
 /// `extent`.
-pub(crate) fn scaled(
-    lower: &mut Lower<'_>,
+pub(crate) fn scaled<'b>(
+    lower: &mut Lower<'_, 'b>,
     node: &Node,
-    unit: Signal,
+    unit: Signal<'b>,
     (factor, extent): (f32, f32),
-) -> Vec<Signal> {
-    let amplitude = lower.signal(node, "amplitude");
-    let pivot = lower.signal(node, "pivot");
+) -> Vec<Signal<'b>> {
+    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
     let unit = unit.with_range([-extent, extent]);
-    let b = lower.b();
-    let factor = b.f32(factor);
-    let amplitude = amplitude.scale(b, factor);
-    let scaled = lower.algebra.product(&unit, &amplitude);
-    vec![scaled.add(lower.b(), &pivot)]
+    vec![lower.algebra.product(&unit, &(amplitude * factor)) + pivot]
 }

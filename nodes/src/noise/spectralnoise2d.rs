@@ -127,7 +127,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let choice = lower.choice(node, "spectrum");
     let lines = lower.stops(node, "lines").means();
     let spectrum = Spectrum {

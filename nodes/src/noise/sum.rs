@@ -1,8 +1,12 @@
 //! What a sum of octaves is, and the fold over them.
 
+mod octave;
+
+pub(super) use octave::Octave;
+
 use super::field::Field;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Scalars, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
 
 /// What a sum of octaves is.
@@ -24,13 +28,13 @@ pub(crate) struct Octaves {
 
 /// The octaves that a footprint leaves.
 #[derive(Clone, Copy)]
-pub(super) struct Left {
+pub(super) struct Left<'b> {
     /// How many whole ones.
-    pub(super) count: Value,
+    pub(super) count: Uint<'b>,
     /// 1 if the last, fractional one is left, else 0.
-    pub(super) last: Value,
+    pub(super) last: Uint<'b>,
     /// The variance of the others.
-    pub(super) gone: Value,
+    pub(super) gone: Float<'b>,
 }
 
 impl Octaves {
@@ -40,11 +44,11 @@ impl Octaves {
     }
 
     /// All octaves.
-    fn all(self, b: &mut Builder) -> Left {
+    fn all(self, b: &Builder) -> Left<'_> {
         Left {
-            count: b.u32(self.count),
-            last: b.u32(u32::from(self.part > 0.0)),
-            gone: b.f32(0.0),
+            count: b.uint(self.count),
+            last: b.uint(u32::from(self.part > 0.0)),
+            gone: b.float(0.0),
         }
     }
 
@@ -58,9 +62,8 @@ impl Octaves {
     }
 
     /// The scrambled seed, which the state of the first octave holds.
-    pub(super) fn scrambled_seed(self, b: &mut Builder) -> Value {
-        let seed = b.u32(self.seed as u32);
-        b.scramble(seed)
+    pub(super) fn scrambled_seed(self, b: &Builder) -> Uint<'_> {
+        b.uint(self.seed as u32).scramble()
     }
 
     /// The root mean square frequency of the sum, over that of its first octave.
@@ -75,70 +78,51 @@ impl Octaves {
         (slopes / energy).sqrt()
     }
 
-    /// The sum over octaves of a noise of variance 1; `octave` is the body of the fold over them.
-    pub(super) fn sum(
+    /// The sum over octaves of a noise of the plane, of variance 1; `octave` is the body of the fold
+    /// over them.
+    pub(super) fn sum<'b>(
         self,
-        lower: &mut Lower<'_>,
+        lower: &Lower<'_, 'b>,
         octave: &FunctionRef,
-        (position, seed): (&[Signal], Value),
-        captures: &[Value],
-        left: Option<Left>,
-    ) -> Field {
+        (position, seed): (&[Signal<'b>], Uint<'b>),
+        captures: impl Scalars<'b>,
+        left: Option<Left<'b>>,
+    ) -> Field<'b> {
         let mode = lower.mode();
         let parts = parts(mode);
-        let sums = self.fold(lower, octave, (position, seed), parts, captures, left);
-        let zero = lower.b().f32(0.0);
+        let first: Octave<'b, 2> = Octave::first(position, seed, self);
+        let sums = self.fold(lower, octave, first, parts, captures, left);
+        let zero = lower.b().float(0.0);
         let at = |i: usize| if i < parts { sums[i] } else { zero };
         Field {
             mean: at(0),
-            gradient: [at(1), at(2)],
-            hessian: [at(3), at(4), at(5)],
+            gradient: Vec2([at(1), at(2)]),
+            hessian: Sym2([at(3), at(4), at(5)]),
             rest: if mode.spreads() { sums[parts] } else { zero },
         }
     }
 
-    /// The last state of the fold over octaves: the `parts` numbers of the field, the rest where the
-    /// mode spreads, and what goes from octave to octave.
-    pub(super) fn fold(
+    /// The sums of a fold over octaves from the first one on: the `parts` numbers of the field, and the
+    /// rest where the mode spreads.
+    pub(super) fn fold<'b, const AXES: usize>(
         self,
-        lower: &mut Lower<'_>,
+        lower: &Lower<'_, 'b>,
         octave: &FunctionRef,
-        (position, seed): (&[Signal], Value),
+        first: Octave<'b, AXES>,
         parts: usize,
-        captures: &[Value],
-        left: Option<Left>,
-    ) -> Vec<Value> {
-        let mode = lower.mode();
+        captures: impl Scalars<'b>,
+        left: Option<Left<'b>>,
+    ) -> Vec<Float<'b>> {
         let b = lower.b();
         let left = left.unwrap_or_else(|| self.all(b));
-        let mut init = vec![b.f32(0.0); parts];
-        if mode.spreads() {
-            init.push(left.gone);
+        let mut sums = vec![b.float(0.0); parts];
+        sums.extend(lower.mode().spreads().then_some(left.gone));
+        let (sums, mut next) = b.fold(octave, left.count, (sums, first), &captures);
+        if self.part == 0.0 {
+            return sums;
         }
-        for axis in position {
-            // The lattice needs a cell and a fraction, whatever the position carries.
-            let (cell, fraction) = match axis.cell {
-                Some(cell) => (cell, axis.mean),
-                None => {
-                    let whole = b.floor(axis.mean);
-                    let fraction = b.sub(axis.mean, whole);
-                    (b.trunc_i(whole), fraction)
-                }
-            };
-            init.push(cell);
-            init.push(fraction);
-        }
-        let amplitude = init.len() + 1;
-        init.extend([b.f32(1.0), b.f32(1.0), seed]);
-        if self.tiles() {
-            init.push(b.f32(self.period as f32));
-        }
-        let mut sums = b.fold(octave, left.count, &init, captures);
-        if self.part > 0.0 {
-            // The state is that of the next octave.
-            sums[amplitude] = b.scale(sums[amplitude], self.part);
-            sums = b.fold(octave, left.last, &sums, captures);
-        }
+        next.amplitude *= self.part;
+        let (sums, _) = b.fold(octave, left.last, (sums, next), &captures);
         sums
     }
 }

@@ -52,19 +52,11 @@ pub(crate) const DEF: NodeDef = NodeDef {
         let mut sum = Signal::constant(lower.b(), 0.0);
         for layer in &layers {
             let magnitude = lower.algebra.transfer(&layer.noise, &absolute);
-            let b = lower.b();
-            let weight = b.f32(layer.amplitude * layer.share);
-            let part = magnitude.scale(b, weight);
-            sum = sum.add(b, &part);
+            sum = sum + magnitude * (layer.amplitude * layer.share);
         }
         lower.algebra.shares = shares;
         let sum = published(lower, sum);
-        let amplitude = lower.signal(node, "amplitude");
-        let pivot = lower.signal(node, "pivot");
-        let b = lower.b();
-        let quarter = b.f32(0.25);
-        let amplitude = amplitude.scale(b, quarter);
-        let scaled = lower.algebra.product(&sum, &amplitude);
-        vec![scaled.add(lower.b(), &pivot)]
+        let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+        vec![lower.algebra.product(&sum, &(amplitude * 0.25)) + pivot]
     },
 };

@@ -1,12 +1,12 @@
 //! `unifiednoise2d`: one node for the noises that are used most.
 
-use crate::componentwise::{product, sum, transfer};
+use crate::componentwise::{product, sum};
 use crate::noise::affine::Affine;
 use crate::noise::cell;
 use crate::noise::kernel::Kernel;
+use crate::noise::noise2d::one_octave;
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
 use crate::noise::source::{EXTENT, SEED, TEXCOORD};
-use crate::noise::sum::Octaves;
 use crate::noise::worley::{self, Output, Worley};
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
@@ -127,31 +127,24 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, freq, offset] =
         ["texcoord", "freq", "offset"].map(|port| lower.bundle(node, port));
-    let position: Vec<Signal> = (0..2)
-        .map(|i| {
-            let scaled = product(lower, &texcoord[i], &freq[i]);
-            sum(lower, &scaled, &offset[i])
-        })
+    let position: Vec<Signal<'b>> = (0..2)
+        .map(|i| sum(&product(lower, &texcoord[i], &freq[i]), &offset[i]))
         .collect();
     let raw = raw(lower, node, &position);
     let [low, high] = ["outmin", "outmax"].map(|port| lower.number(node, port));
-    let b = lower.b();
-    let span = b.sub(high, low);
-    let out = raw.scale(b, span).offset(b, low);
+    let out = (raw * (high - low)).offset(low);
     if !lower.flag(node, "clampoutput") {
         return vec![out];
     }
-    let b = lower.b();
-    let (least, most) = (b.min(low, high), b.max(low, high));
-    let clamp = Piecewise::clamp(b, least, most);
-    vec![transfer(lower, &out, &clamp)]
+    let clamp = Piecewise::clamp(low.min(high), low.max(high));
+    vec![lower.algebra.transfer(&out, &clamp)]
 }
 
 /// The noise that is chosen, before it is remapped.
-fn raw(lower: &mut Lower<'_>, node: &Node, position: &[Signal]) -> Signal {
+fn raw<'b>(lower: &mut Lower<'_, 'b>, node: &Node, position: &[Signal<'b>]) -> Signal<'b> {
     let seed = lower.integer(node, "seed");
     match lower.choice(node, "type") {
         "cell" => {
@@ -171,26 +164,15 @@ fn raw(lower: &mut Lower<'_>, node: &Node, position: &[Signal]) -> Signal {
             field.at(lower, position).with_range([0.0, farthest])
         }
         kind => {
-            let fractal = kind == "fractal";
-            let octaves = if fractal {
-                octaves(lower, node)
-            } else {
-                Octaves {
-                    count: 1,
-                    part: 0.0,
-                    lacunarity: 2.0,
-                    diminish: 1.0,
-                    seed,
-                    period: 0,
-                }
+            let (octaves, factor, pivot) = match kind {
+                "fractal" => (octaves(lower, node), 0.25, 0.0),
+                _ => (one_octave(seed, 0), 0.125, 0.5),
             };
             Kernel::Gaussian.report(lower, position, octaves);
-            let (factor, pivot) = if fractal { (0.25, 0.0) } else { (0.125, 0.5) };
             let extent = factor * EXTENT * octaves.sd();
-            let b = lower.b();
             let shape = Affine {
-                amplitude: b.f32(factor),
-                pivot: b.f32(pivot),
+                amplitude: lower.b().float(factor),
+                pivot: lower.b().float(pivot),
             };
             let signal = Kernel::Gaussian.signal(lower, position, octaves, shape);
             signal.with_range([pivot - extent, pivot + extent])

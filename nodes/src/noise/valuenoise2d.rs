@@ -1,9 +1,8 @@
 //! `valuenoise2d`: random values at lattice points, blended between them.
 
 use crate::noise::kernel::Kernel;
+use crate::noise::noise2d::tiled_octave;
 use crate::noise::perlin::Kind;
-use crate::noise::sum::Octaves;
-
 use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, tiling};
 use mipless_codegen::NodeDef;
 use mipless_graph::{
@@ -76,15 +75,8 @@ static SPEC: NodeSpec = NodeSpec {
 pub(crate) const DEF: NodeDef = NodeDef {
     spec: &SPEC,
     lower: |lower, node| {
-        let octaves = Octaves {
-            count: 1,
-            part: 0.0,
-            lacunarity: 2.0,
-            diminish: 1.0,
-            seed: lower.integer(node, "seed"),
-            period: lower.integer(node, "period").max(0) as u32,
-        };
+        let octave = tiled_octave(lower, node);
         let kernel = Kernel::Quintic(Kind::Value);
-        octaves_of(lower, node, (kernel, octaves), (SD, 0.5 / SD))
+        octaves_of(lower, node, (kernel, octave), (SD, 0.5 / SD))
     },
 };

@@ -14,15 +14,18 @@ mod points;
 mod quadrupole;
 mod quintic;
 mod spread;
+mod symmetric;
 
 use super::perlin::fit::SPACE;
+use super::sum::Octave;
 use super::sum::Octaves;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_graph::Node;
 use spread::Inverse;
 pub(super) use spread::Spread;
+use symmetric::Symmetric;
 
 /// a of the quadrupole: the width of the kernel, in cells.
 const WIDTH: f32 = 0.3854;
@@ -38,7 +41,7 @@ pub(crate) enum Kind {
 
 impl Kind {
     /// The node's `kernel`.
-    pub(crate) fn of(lower: &Lower<'_>, node: &Node) -> Self {
+    pub(crate) fn of(lower: &Lower<'_, '_>, node: &Node) -> Self {
         if lower.choice(node, "kernel") == "quintic" {
             Self::Quintic
         } else {
@@ -73,16 +76,13 @@ impl Kind {
     }
 
     /// The energy that a filter leaves, and its derivatives by the footprint.
-    fn energy(self, b: &mut Builder, spread: &Spread, inverse: &Inverse) -> [Value; 3] {
+    fn energy<'b>(self, spread: &Spread<'b>, inverse: &Inverse<'b>) -> [Float<'b>; 3] {
         match self {
-            Self::Quadrupole => energy::quadrupole(b, spread, inverse),
-            Self::Quintic => energy::quintic(b, spread, SPACE.width),
+            Self::Quadrupole => energy::quadrupole(spread, inverse),
+            Self::Quintic => energy::quintic(spread, SPACE.width),
         }
     }
 }
-
-/// The pairs of axes of a symmetric matrix, in the order of its six numbers.
-const PAIRS: [[usize; 2]; 6] = [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]];
 
 /// The names of a field's numbers: mean, gradient, Hessian.
 const NAMES: [&str; 10] = [
@@ -98,29 +98,18 @@ fn parts(mode: Mode) -> usize {
     }
 }
 
-/// Where the number of a pair of axes stands.
-fn place(i: usize, j: usize) -> usize {
-    PAIRS
-        .iter()
-        .position(|&pair| pair == [i.min(j), i.max(j)])
-        .expect("axes are below 3")
-}
-
 /// The filtered sum of octaves as a signal, at a position in cells of the first octave; unit
 /// variance of the first octave.
-pub(crate) fn filtered(
-    lower: &mut Lower<'_>,
-    position: &[Signal],
+pub(crate) fn filtered<'b>(
+    lower: &mut Lower<'_, 'b>,
+    position: &[Signal<'b>],
     kind: Kind,
     octaves: Octaves,
-) -> Signal {
+) -> Signal<'b> {
     let mode = lower.mode();
-    let b = lower.b();
-    let spread = Spread::of(b, position, kind.width());
-    let size = spread.size(b);
+    let spread = Spread::of(position, kind.width());
     // The first octave dominates: it decides what the footprint is to the source.
-    let wavelengths = b.scale(size, kind.width() / kind.wavelength());
-    lower.source_footprint(wavelengths);
+    lower.source_footprint(spread.size() * (kind.width() / kind.wavelength()));
     let Octaves {
         lacunarity,
         diminish,
@@ -132,28 +121,22 @@ pub(crate) fn filtered(
         Mode::Point => octave::point(module, kind, octaves),
         _ => octave::filtered(module, kind, mode, octaves),
     });
-    let captures = match mode {
-        Mode::Point => Vec::new(),
-        _ => spread.captures(),
-    };
+    let captures = (mode != Mode::Point).then_some(spread);
     let seed = octaves.scrambled_seed(lower.b());
-    let sums = octaves.fold(
-        lower,
-        &octave,
-        (position, seed),
-        parts(mode),
-        &captures,
-        None,
-    );
+    let first: Octave<'b, 3> = Octave::first(position, seed, octaves);
+    let sums = octaves.fold(lower, &octave, first, parts(mode), captures, None);
     at(lower, position, &sums)
 }
 
 /// The signal of a field (its numbers come first, then the rest if the mode spreads) at a position: g = Jᵀ∇M,
 /// H = Jᵀ Hess(M) J + Σ ∂_i M H_i, the position's own symbols through ∇M, the rest as a fresh ε.
-pub(super) fn at(lower: &mut Lower<'_>, position: &[Signal], sums: &[Value]) -> Signal {
-    let algebra = &mut lower.algebra;
-    let (mode, b) = (algebra.mode, &mut algebra.b);
-    let mut signal = Signal::certain(b, sums[0]);
+pub(super) fn at<'b>(
+    lower: &mut Lower<'_, 'b>,
+    position: &[Signal<'b>],
+    sums: &[Float<'b>],
+) -> Signal<'b> {
+    let mode = lower.mode();
+    let mut signal = Signal::certain(sums[0]);
     if !mode.spreads() {
         return signal;
     }
@@ -161,23 +144,19 @@ pub(super) fn at(lower: &mut Lower<'_>, position: &[Signal], sums: &[Value]) -> 
     let field = &sums[..parts];
     if let Some(gradient) = field.get(1..4) {
         for (axis, &slope) in position.iter().zip(gradient) {
-            let part = axis.scale(b, slope);
-            signal = signal.add(b, &part);
+            signal = signal + axis * slope;
         }
         signal.cell = None;
         signal.mean = sums[0];
     }
-    if let Some(hessian) = field.get(4..10) {
+    if let Some(hessian) = field[parts.min(4)..].first_chunk() {
+        let hessian = Symmetric(*hessian);
         for (out, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
-            let mut sum = signal.h[out];
             for p in 0..3 {
                 for q in 0..3 {
-                    let product = b.mul(position[p].g[i], position[q].g[j]);
-                    let part = b.mul(product, hessian[place(p, q)]);
-                    sum = b.add(sum, part);
+                    signal.h[out] += position[p].g[i] * position[q].g[j] * hessian.at(p, q);
                 }
             }
-            signal.h[out] = sum;
         }
     }
     lower.algebra.attach_fresh(&mut signal, sums[parts]);

@@ -1,10 +1,11 @@
 //! `whitenoise2d`: a random number at every point.
 
-use crate::noise::cell::{VARIANCE, lattice_seed, number, split};
+use crate::noise::cell::place::split;
+use crate::noise::cell::{VARIANCE, deviation, lattice_seed, number};
 use crate::noise::cellnoise2d::PERIOD;
 use crate::noise::field::{Field, Spread};
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
-use mipless_codegen::ir::Value;
+use mipless_codegen::ir::{Sym2, Vec2};
 use mipless_codegen::moments::Normal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -56,47 +57,35 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
     let (seed, period) = (lower.integer(node, "seed"), lower.integer(node, "period"));
-    let mode = lower.mode();
-    let spread = Spread::of(lower.b(), &position);
-    let size = lower.b().sqrt(spread.eigenvalues[0]);
-    lower.source_footprint(size);
+    let spread = Spread::of(&position);
+    lower.source_footprint(spread.eigenvalues[0].sqrt());
     let b = lower.b();
     let seed = lattice_seed(b, seed, 0x3c6e_f372);
-    let [column, x] = split(b, &position[0]);
-    let [row, y] = split(b, &position[1]);
-    let (value, _) = number(b, column, row, seed, period);
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let [(column, x), (row, y)] = [0, 1].map(|axis| split(&position[axis]));
+    let value = number([column, row], seed, period);
+    let zero = b.float(0.0);
     let mut field = Field {
         mean: value,
-        gradient: [zero; 2],
-        hessian: [zero; 3],
+        gradient: Vec2::splat(zero),
+        hessian: Sym2::splat(zero),
         rest: zero,
     };
-    if mode.filters() {
-        let mut share = one;
-        for (fraction, variance) in [(x, spread.covariance[0]), (y, spread.covariance[2])] {
-            let raised = b.offset(variance, 1e-12);
-            let sd = b.sqrt(raised);
-            let inverse = b.div(one, sd);
-            let low = b.neg(fraction);
-            let high = b.sub(one, fraction);
-            let edges: [Value; 2] = [low, high].map(|d| Normal::at(b, d, inverse).below);
-            let inside = b.sub(edges[1], edges[0]);
-            share = b.mul(share, inside);
-        }
-        let share = b.clamp(share, 0.0, 1.0);
-        let off = b.offset(value, -0.5);
-        let mean = b.mul(share, off);
-        field.mean = b.offset(mean, 0.5);
-        if mode.spreads() {
-            let others = b.sub(one, share);
-            let square = b.square(off);
-            let own = b.mul(square, share);
-            let own = b.offset(own, VARIANCE);
-            field.rest = b.mul(own, others);
+    if lower.mode().filters() {
+        // The share of the footprint that lies in the grain.
+        let [s_xx, _, s_yy] = *spread.covariance;
+        let [along_x, along_y] = [(x, s_xx), (y, s_yy)].map(|(fraction, variance)| {
+            let [_, inverse] = deviation(variance);
+            let below = |edge| Normal::at(edge, inverse).below;
+            below(1.0 - fraction) - below(-fraction)
+        });
+        let share = (along_x * along_y).clamp(0.0, 1.0);
+        let off = value + -0.5;
+        field.mean = share * off + 0.5;
+        if lower.mode().spreads() {
+            field.rest = (off.square() * share + VARIANCE) * (1.0 - share);
         }
     }
     vec![field.at(lower, &position).with_range([0.0, 1.0])]

@@ -1,21 +1,14 @@
 //! The window of lattice points along a line that a footprint needs.
 
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Float, Uint};
 
-/// ⌈needed⌉ between the least and the most, as a real and as a u32.
-pub(super) fn count(b: &mut Builder, needed: Value, [least, most]: [f32; 2]) -> [Value; 2] {
-    let minus = b.neg(needed);
-    let floor = b.floor(minus);
-    let up = b.neg(floor);
-    let count = b.clamp(up, least, most);
-    let turns = b.trunc_i(count);
-    [count, b.cast_u(turns)]
+/// ⌈needed⌉ between the least and the most, as a real and as an integer.
+pub(super) fn count<'b>(needed: Float<'b>, [least, most]: [f32; 2]) -> (Float<'b>, Uint<'b>) {
+    let count = needed.ceil().clamp(least, most);
+    (count, count.to_int().to_uint())
 }
 
-/// The lattice coordinate that a window of `count` (a real) points around `x` starts at.
-pub(super) fn start(b: &mut Builder, x: Value, count: Value) -> Value {
-    let half = b.scale(count, -0.5);
-    let start = b.add(x, half);
-    let start = b.floor(start);
-    b.offset(start, 1.0)
+/// The lattice coordinate that a window of `count` points around `x` starts at.
+pub(super) fn start<'b>(x: Float<'b>, count: Float<'b>) -> Float<'b> {
+    (x + count * -0.5).floor() + 1.0
 }

@@ -10,12 +10,13 @@ mod taps;
 
 pub(crate) use shape::{Output, Worley};
 
-use super::cell::{lattice_seed, split};
+use super::cell::lattice_seed;
+use super::cell::place::{called, declared, declared_spread, field, window_start};
 use super::field::{Field, Spread};
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
-use taps::{NODES, row, window};
+use taps::{NODES, Nearest, Rows, row};
 
 /// Windows of cells around one place: every point within 1.5 cells is found.
 const CELLS: f32 = 4.0;
@@ -25,175 +26,123 @@ const CELLS: f32 = 4.0;
 const WIDEST: [f32; 2] = [1.2, 1.5];
 
 /// The filtered noise at a position in cells.
-pub(crate) fn filtered(lower: &mut Lower<'_>, position: &[Signal], worley: Worley) -> Field {
+pub(crate) fn filtered<'b>(
+    lower: &mut Lower<'_, 'b>,
+    position: &[Signal<'b>],
+    worley: Worley,
+) -> Field<'b> {
     let mode = lower.mode();
-    let spread = Spread::of(lower.b(), position);
-    let size = lower.b().sqrt(spread.eigenvalues[0]);
-    lower.source_footprint(size);
+    let spread = Spread::of(position);
+    lower.source_footprint(spread.eigenvalues[0].sqrt());
     let key = format!("worley {mode:?} {worley:?}");
     let function = lower.function(&key, |module| build(module, mode, worley));
-    let b = lower.b();
-    let mut arguments = Vec::new();
-    for axis in position {
-        arguments.extend(split(b, axis));
-    }
-    if mode.filters() {
-        arguments.extend(spread.covariance);
-        arguments.extend(spread.eigenvalues);
-    }
-    let results = b.call(&function, &arguments);
-    let zero = b.f32(0.0);
-    let at = |i: usize| results.get(i).copied().unwrap_or(zero);
-    Field {
-        mean: at(0),
-        gradient: [at(1), at(2)],
-        hessian: [zero; 3],
-        rest: at(3),
-    }
+    let results = called(lower, &function, (position, &spread), ());
+    field(&results[..results.len().min(3)], results.get(3).copied())
 }
 
-/// The values at places around (x, y), `reach` = how far they are spread along each axis.
-fn search(
-    b: &mut Builder,
+/// The values at places around (x, y), `reach` = how far they are spread along each axis; of none
+/// unless the condition holds.
+fn search<'b>(
     row: &FunctionRef,
     worley: Worley,
-    places: &[[Value; 2]],
-    centre: [Value; 4],
-    reach: [Value; 2],
-    any: Value,
-) -> Vec<Value> {
-    let [cell_x, x, cell_y, y] = centre;
-    let seed = lattice_seed(b, worley.seed, 0xa54f_f53a);
-    let counts = reach.map(|reach| {
-        let minus = b.scale(reach, -2.0);
-        let floor = b.floor(minus);
-        let more = b.neg(floor);
-        b.offset(more, CELLS)
-    });
-    let start_x = window(b, x, counts[0]);
-    let start_y = window(b, y, counts[1]);
-    let [columns, rows] = counts.map(|count| {
-        let whole = b.trunc_i(count);
-        b.cast_u(whole)
-    });
-    let none = b.u32(0);
-    let rows = b.select(any, rows, none);
-    let mut captures = vec![start_y, start_x, columns, cell_x, cell_y, seed];
-    captures.extend(places.iter().flatten());
-    let init: Vec<Value> = (places.iter())
-        .flat_map(|_| taps::init(b, worley))
-        .collect();
-    let state = b.fold(row, rows, &init, &captures);
-    (state.chunks(init.len() / places.len()))
-        .map(|tap| taps::value(b, worley, tap))
+    places: &[Vec2<'b>],
+    ([cell_x, cell_y], [x, y]): ([Int<'b>; 2], [Float<'b>; 2]),
+    reach: [Float<'b>; 2],
+    any: Bool<'b>,
+) -> Vec<Float<'b>> {
+    let b = x.builder();
+    let counts = reach.map(|reach| CELLS - (reach * -2.0).floor());
+    let [columns, rows] = counts.map(|count| count.to_int().to_uint());
+    let shared = Rows {
+        start_y: window_start(y, counts[1]),
+        start_x: window_start(x, counts[0]),
+        columns,
+        cell_x,
+        cell_y,
+        seed: lattice_seed(b, worley.seed, 0xa54f_f53a),
+    };
+    let before = vec![Nearest::none(b, worley); places.len()];
+    let nearest = b.fold(row, any.select(rows, 0u32), before, (shared, places));
+    nearest
+        .iter()
+        .map(|nearest| nearest.value(worley))
         .collect()
 }
 
 fn build(module: &mut Module, mode: Mode, worley: Worley) -> FunctionRef {
     let count = if mode.filters() { NODES.len() } else { 1 };
     let row = row(module, worley, count);
-    let mut b = Builder::new("worley", "Distances to random points over a footprint.");
-    let cell_x = b.param("cell_x", Type::I32);
-    let x = b.param_f32("x");
-    let cell_y = b.param("cell_y", Type::I32);
-    let y = b.param_f32("y");
-    let centre = [cell_x, x, cell_y, y];
-    let (zero, one, always) = (b.f32(0.0), b.f32(1.0), b.bool(true));
+    let b = &Builder::new("worley", "Distances to random points over a footprint.");
+    let centre = declared::<2>(b);
+    let place = Vec2(centre.1);
     if !mode.filters() {
-        let found = search(&mut b, &row, worley, &[[x, y]], centre, [zero; 2], always);
+        let found = search(
+            &row,
+            worley,
+            &[place],
+            centre,
+            [b.float(0.0); 2],
+            b.literal(true),
+        );
         b.result("mean", found[0]);
         return b.finish(module);
     }
-    let [s_xx, s_xy, s_yy] = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
-    let eigenvalues = [b.param_f32("s_major"), b.param_f32("s_minor")];
-    let axes = eigenvalues.map(|v| b.sqrt(v));
+    let Spread {
+        covariance,
+        eigenvalues,
+    } = declared_spread(b);
+    let [s_xx, s_xy, s_yy] = *covariance;
+    let [major, minor] = eigenvalues.map(Float::sqrt);
 
     // LLᵀ = Σ; a minor axis below 1/50 of the major one is taken for that, so that slopes are.
-    let floor = b.scale(axes[0], 0.02);
-    let square = b.square(floor);
-    let wide = b.max(s_xx, square);
-    let l11 = b.sqrt(wide);
-    let tiny = b.f32(1e-12);
-    let guarded = b.max(l11, tiny);
-    let l21 = b.div(s_xy, guarded);
-    let square = b.square(l21);
-    let left = b.sub(s_yy, square);
-    let left = b.max(left, zero);
-    let l22 = b.sqrt(left);
-    let l22 = b.max(l22, floor);
+    let floor = major * 0.02;
+    let l11 = s_xx.max(floor.square()).sqrt();
+    let l21 = s_xy / l11.max(1e-12);
+    let l22 = (s_yy - l21.square()).max(0.0).sqrt().max(floor);
 
     // How much of the taps' average stands.
-    let sum = b.add(axes[0], axes[1]);
-    let size = b.scale(sum, 0.5);
-    let (slope, trust) = worley.slopes(&mut b, size);
-    let reach = [s_xx, s_yy].map(|v| b.sqrt(v));
-    let farthest = b.max(reach[0], reach[1]);
-    let fade = b.offset(farthest, -WIDEST[1]);
-    let fade = b.scale(fade, -1.0 / (WIDEST[1] - WIDEST[0]));
-    let fade = b.clamp(fade, 0.0, 1.0);
-    let (slope, trust) = (b.mul(slope, fade), b.mul(trust, fade));
-    let any = b.lt(zero, fade);
+    let size = (major + minor) * 0.5;
+    let extent = [s_xx, s_yy].map(Float::sqrt);
+    let farthest = extent[0].max(extent[1]);
+    let fade = (farthest + -WIDEST[1]) * (-1.0 / (WIDEST[1] - WIDEST[0]));
+    let fade = fade.clamp(0.0, 1.0);
+    let [slope, trust] = worley.slopes(size).map(|slope| slope * fade);
 
-    let limit = b.f32(WIDEST[1]);
-    let places: Vec<[Value; 2]> = (NODES.iter())
-        .map(|[p, q, _]| {
-            let dx = b.scale(l11, *p);
-            let (first, second) = (b.scale(l21, *p), b.scale(l22, *q));
-            let dy = b.add(first, second);
-            [b.add(x, dx), b.add(y, dy)]
-        })
-        .collect();
     // The hexagon reaches twice a standard deviation.
-    let reach = [l11, reach[1]].map(|reach| {
-        let reach = b.max(reach, floor);
-        let reach = b.min(reach, limit);
-        b.add(reach, reach)
+    let places: Vec<Vec2<'_>> = (NODES.iter())
+        .map(|&[p, q, _]| place + Vec2([l11 * p, l21 * p + l22 * q]))
+        .collect();
+    let reach = [l11, extent[1]].map(|sd| {
+        let sd = sd.max(floor).min(WIDEST[1]);
+        sd + sd
     });
-    let found = search(&mut b, &row, worley, &places, centre, reach, any);
+    let found = search(&row, worley, &places, centre, reach, fade.gt(0.0));
 
     // Deviations from the centre keep their digits.
-    let [mut m1, mut m2, mut c1, mut c2] = [zero; 4];
+    let [mut m1, mut m2, mut along, mut across] = [b.float(0.0); 4];
     for (&value, [p, q, weight]) in found.iter().zip(NODES) {
-        let d = b.sub(value, found[0]);
-        let part = b.scale(d, weight);
-        m1 = b.add(m1, part);
-        let square = b.mul(part, d);
-        m2 = b.add(m2, square);
-        let (along, across) = (b.scale(part, p), b.scale(part, q));
-        c1 = b.add(c1, along);
-        c2 = b.add(c2, across);
+        let d = value - found[0];
+        let part = d * weight;
+        m1 += part;
+        m2 += part * d;
+        along += part * p;
+        across += part * q;
     }
-    let [centre_mean, variance] = worley.moments().map(|m| b.f32(m));
-    let off = b.sub(found[0], centre_mean);
-    let off = b.add(off, m1);
-    let off = b.mul(off, slope);
-    let mean = b.add(centre_mean, off);
-    b.result("mean", mean);
+    let [centre_mean, variance] = worley.moments();
+    b.result("mean", centre_mean + (found[0] - centre_mean + m1) * slope);
     // Lᵀ∇ = c.
-    let guarded = b.max(l22, tiny);
-    let dy = b.div(c2, guarded);
-    let lean = b.mul(l21, dy);
-    let dx = b.sub(c1, lean);
-    let guarded = b.max(l11, tiny);
-    let dx = b.div(dx, guarded);
+    let dy = across / l22.max(1e-12);
+    let dx = (along - l21 * dy) / l11.max(1e-12);
     let carries = matches!(mode, Mode::Local | Mode::Quad);
-    let slopes = [dx, dy].map(|d| if carries { b.mul(d, slope) } else { zero });
+    let slopes = Vec2([dx, dy]).map(|d| if carries { d * slope } else { b.float(0.0) });
     b.result("dx", slopes[0]);
     b.result("dy", slopes[1]);
     if mode.spreads() {
-        let lost = worley.lost(&mut b, size);
-        let expected = b.mul(lost, variance);
+        let expected = worley.lost(size) * variance;
         let rest = if carries {
-            let square = b.square(m1);
-            let taps = b.sub(m2, square);
-            let kept = b.sub(one, trust);
-            let (own, other) = (b.mul(taps, trust), b.mul(expected, kept));
-            let local = b.add(own, other);
-            let left = b.dot(&[s_xx, s_xy], &slopes);
-            let right = b.dot(&[s_xy, s_yy], &slopes);
-            let linear = b.dot(&slopes, &[left, right]);
-            let rest = b.sub(local, linear);
-            b.max(rest, zero)
+            let taps = m2 - m1.square();
+            let local = taps * trust + expected * (1.0 - trust);
+            (local - slopes.dot(covariance.times(slopes))).max(0.0)
         } else {
             expected
         };

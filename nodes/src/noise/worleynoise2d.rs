@@ -84,7 +84,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
     let worley = Worley {
         jitter: lower.float(node, "jitter"),

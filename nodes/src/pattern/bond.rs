@@ -1,7 +1,7 @@
 //! Where the bricks of a bond lie in its unit cell.
 
 use super::harmonics::Shear;
-use mipless_codegen::ir::{Builder, Module, Value};
+use mipless_codegen::ir::{Float, Module, Uint};
 
 /// How bricks are laid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,10 +33,10 @@ pub(crate) struct Brick {
 
 impl Brick {
     /// The centre for an offset of the running bond.
-    pub(crate) fn place(&self, b: &mut Builder, offset: Value) -> [Value; 2] {
-        let [x, y] = self.centre.map(|v| b.f32(v));
+    pub(crate) fn place<'b>(&self, offset: Float<'b>) -> [Float<'b>; 2] {
+        let [x, y] = self.centre.map(|v| offset.literal(v));
         // The shift moves the pattern along +x, so that the brick's start moves with it.
-        [if self.shifted { b.add(offset, x) } else { x }, y]
+        [if self.shifted { offset + x } else { x }, y]
     }
 }
 
@@ -64,27 +64,16 @@ impl Rows {
     }
 
     /// Centre and size of one of them, in bricks and rows, for an offset of the running bond.
-    pub(crate) fn brick(
+    pub(crate) fn brick<'b>(
         self,
-        b: &mut Builder,
-        which: Value,
-        offset: Value,
-    ) -> ([Value; 2], [Value; 2]) {
-        let width = b.u32(5);
-        let first = b.mul_u(which, width);
-        let mut entry = |i: u32| {
-            let i = b.u32(i);
-            let at = b.add_u(first, i);
-            b.load(self.table, at)
-        };
-        let [x, y, width, height] = [0, 1, 2, 3].map(&mut entry);
-        let x = if self.has_shift {
-            let shift = entry(4);
-            let shift = b.mul(shift, offset);
-            b.add(x, shift)
-        } else {
-            x
-        };
+        which: Uint<'b>,
+        offset: Float<'b>,
+    ) -> ([Float<'b>; 2], [Float<'b>; 2]) {
+        let entry = |i: u32| offset.builder().load(self.table, which * 5 + i);
+        let [mut x, y, width, height] = [0, 1, 2, 3].map(entry);
+        if self.has_shift {
+            x += entry(4) * offset;
+        }
         ([x, y], [width, height])
     }
 }

@@ -6,11 +6,11 @@ use crate::pattern::grid::TEXCOORD;
 use crate::pattern::random::numbered;
 use crate::pattern::separable::{Pattern, filtered};
 use crate::pattern::slope::report_bricks;
+use crate::pattern::unless::pattern_unless;
 use crate::pattern::wall::Wall;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -121,7 +121,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("rows"),
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["columns", "rows", "row_offset", "mortar", "bevel"]),
     example: r#"{
   "version": 1,
   "name": "brick_example",
@@ -135,54 +135,31 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    let other = ["columns", "rows", "row_offset", "mortar", "bevel"];
-    if other.into_iter().any(|port| inputs.varies(port)) {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let bond = Bond::named(lower.choice(node, "bond"));
     let texcoord = lower.bundle(node, "texcoord");
     let counts = ["columns", "rows"].map(|port| lower.signal(node, port));
     let cell = bond.cell();
-    let position = [0, 1].map(|i| {
-        let bricks = product(lower, &texcoord[i], &counts[i]);
-        let b = lower.b();
-        let by = b.f32(1.0 / cell[i]);
-        bricks.scale(b, by)
-    });
+    let position = [0, 1].map(|i| product(lower, &texcoord[i], &counts[i]) * (1.0 / cell[i]));
     let [offset, mortar, bevel] =
         ["row_offset", "mortar", "bevel"].map(|port| lower.number(node, port));
     if lower.choice(node, "output") == "random" {
         let seed = lower.integer(node, "seed");
         return vec![numbered(lower, &position, bond, offset, seed)];
     }
-    let b = lower.b();
-    let [columns, rows] = counts.map(|count| count.flat_mean(b));
-    let [columns, rows] = [columns, rows].map(|v| b.abs(v));
-    let least = b.f32(1e-6);
-    let rows = b.max(rows, least);
+    let [columns, rows] = counts.map(|count| count.flat_mean().abs());
+    let rows = rows.max(1e-6);
     // From rows to columns.
-    let aspect = b.div(columns, rows);
-    let [mortar, bevel] = [mortar, bevel].map(|v| b.clamp(v, 0.0, 1.0));
-    let [mortar_x, bevel_x] = [mortar, bevel].map(|v| b.mul(v, aspect));
+    let aspect = columns / rows;
+    let [mortar, bevel] = [mortar, bevel].map(|v| v.clamp(0.0, 1.0));
+    let [mortar_x, bevel_x] = [mortar, bevel].map(|v| v * aspect);
     let edges = [mortar_x, bevel_x, mortar, bevel];
     report_bricks(lower, &texcoord, [columns, rows], edges);
-    let b = lower.b();
-    let sharp = b.is_zero(bevel);
-    let width = [
-        b.scale(bevel_x, 1.0 / cell[0]),
-        b.scale(bevel, 1.0 / cell[1]),
-    ];
+    let width = [bevel_x * (1.0 / cell[0]), bevel * (1.0 / cell[1])];
     let pattern = Pattern {
         cell: &Wall { bond },
         parameters: vec![offset, mortar_x, bevel_x, mortar, bevel],
-        ramps: (!sharp).then_some(width),
+        ramps: (!bevel.is_zero()).then_some(width),
     };
     vec![filtered(lower, &position, &pattern)]
 }

@@ -1,10 +1,10 @@
 //! Squares of two colours.
 
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 use crate::componentwise::{binary, difference, product};
@@ -69,7 +69,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Color3),
-    class,
+    class: |inputs| pattern_unless(inputs, &["color1", "color2", "uvtiling", "uvoffset"]),
     example: r##"{
   "version": 1,
   "name": "checkerboard_example",
@@ -83,27 +83,17 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    let other = ["color1", "color2", "uvtiling", "uvoffset"];
-    if other.into_iter().any(|port| inputs.varies(port)) {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = tiled(lower, node, [0.5, 0.5]);
     let terms = Terms {
         key: "checkerboard".to_owned(),
         of: &|b, _| {
-            let quarter = b.f32(0.25);
+            let quarter = b.float(0.25);
             let pulse = Pulse {
                 repeat: 1.0,
                 centre: quarter,
                 half: quarter,
-                bevel: b.f32(0.0),
+                bevel: b.float(0.0),
                 short: true,
             };
             let (x, y) = (Some(pulse), Some(pulse));
@@ -120,21 +110,20 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     // 1 where the sum of the cells is even.
     let parity = filtered(lower, &position, &pattern);
     binary(lower, node, ["color2", "color1"], |lower, even, odd| {
-        let across = even.sub(lower.b(), odd);
-        let part = product(lower, &across, &parity);
-        odd.add(lower.b(), &part)
+        odd + product(lower, &(even - odd), &parity)
     })
 }
 
 /// (texcoord · uvtiling − uvoffset) · scale.
-pub(crate) fn tiled(lower: &mut Lower<'_>, node: &Node, scale: [f32; 2]) -> [Signal; 2] {
+pub(crate) fn tiled<'b>(
+    lower: &mut Lower<'_, 'b>,
+    node: &Node,
+    scale: [f32; 2],
+) -> [Signal<'b>; 2] {
     let [texcoord, tiling, offset] =
         ["texcoord", "uvtiling", "uvoffset"].map(|port| lower.bundle(node, port));
     [0, 1].map(|i| {
         let tiled = product(lower, &texcoord[i], &tiling[i]);
-        let tiled = difference(lower, &tiled, &offset[i]);
-        let b = lower.b();
-        let by = b.f32(scale[i]);
-        tiled.scale(b, by)
+        difference(&tiled, &offset[i]) * scale[i]
     })
 }

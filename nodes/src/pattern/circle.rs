@@ -3,10 +3,10 @@
 use crate::pattern::figure::{Figure, drawn_softly};
 use crate::pattern::grid::TEXCOORD;
 
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 /// How soft.
@@ -57,7 +57,7 @@ static SPEC: NodeSpec = NodeSpec {
         EDGE,
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["center", "radius", "edge"]),
     example: r##"{
   "version": 1,
   "name": "circle_example",
@@ -71,19 +71,7 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["center", "radius", "edge"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let edge = lower.number(node, "edge");
     drawn_softly(lower, node, Some(edge), |lower| {
         let radius = lower.number(node, "radius");

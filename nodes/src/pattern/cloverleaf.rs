@@ -3,10 +3,10 @@
 use crate::pattern::figure::{Figure, drawn};
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::region::Outline;
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -47,7 +47,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["center", "radius"]),
     example: r##"{
   "version": 1,
   "name": "cloverleaf_example",
@@ -61,25 +61,13 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["center", "radius"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
 /// Edges of a quarter of a circle.
 const EDGES: usize = 12;
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     drawn(lower, node, |lower| {
         let radius = lower.number(node, "radius");
-        let zero = lower.b().f32(0.0);
+        let zero = lower.b().float(0.0);
         Figure::Polygon {
             outline: outline(),
             axes: [[radius, zero], [zero, radius], [zero, zero]],

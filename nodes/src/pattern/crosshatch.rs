@@ -5,11 +5,11 @@ use crate::pattern::grid::{STAGGERED, TEXCOORD, UVOFFSET, UVTILING};
 use crate::pattern::pulse::Pulse;
 use crate::pattern::separable::{Pattern, Term, Terms, filtered};
 use crate::pattern::tiling::{self, hatch};
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -59,7 +59,7 @@ static SPEC: NodeSpec = NodeSpec {
         STAGGERED,
     ],
     output: OutputType::Exactly(Type::Color3),
-    class,
+    class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset", "thickness"]),
     example: r#"{
   "version": 1,
   "name": "crosshatch_example",
@@ -73,19 +73,7 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["uvtiling", "uvoffset", "thickness"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let lines = if lower.flag(node, "staggered") {
         staggered(lower, node)
     } else {
@@ -95,25 +83,20 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
 }
 
 /// Cells in columns: both coordinates of the diagonals are periodic.
-fn plain(lower: &mut Lower<'_>, node: &Node) -> Signal {
+fn plain<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Signal<'b> {
     let [x, y] = tiled(lower, node, [1.0; 2]);
     let thickness = lower.number(node, "thickness");
-    let b = lower.b();
     // Both coordinates of the diagonals are whole on the lines; a cell across is √2 of theirs.
-    let position = [x.sub(b, &y), x.add(b, &y)];
-    let thickness = b.clamp(thickness, 0.0, 1.0);
+    let position = [&x - &y, &x + &y];
     let terms = Terms {
         key: "crosshatch".to_owned(),
         of: &|b, parameters| {
-            let reach = b.scale(parameters[0], std::f32::consts::FRAC_1_SQRT_2);
-            let half = b.f32(0.5);
-            let open = b.sub(half, reach);
-            let zero = b.f32(0.0);
+            let open = 0.5 - parameters[0] * std::f32::consts::FRAC_1_SQRT_2;
             let pulse = Pulse {
                 repeat: 1.0,
-                centre: half,
-                half: b.max(open, zero),
-                bevel: zero,
+                centre: b.float(0.5),
+                half: open.max(0.0),
+                bevel: b.float(0.0),
                 short: true,
             };
             (1.0, vec![Term::product(pulse, pulse).times(-1.0)])
@@ -121,21 +104,16 @@ fn plain(lower: &mut Lower<'_>, node: &Node) -> Signal {
     };
     let pattern = Pattern {
         cell: &terms,
-        parameters: vec![thickness],
+        parameters: vec![thickness.clamp(0.0, 1.0)],
         ramps: None,
     };
     filtered(lower, &position, &pattern)
 }
 
 /// Rows of cells that alternate.
-fn staggered(lower: &mut Lower<'_>, node: &Node) -> Signal {
+fn staggered<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Signal<'b> {
     // Two rows are a unit cell, whose origin is in the middle of the first.
     let [x, y] = tiled(lower, node, [1.0, 0.5]);
-    let thickness = lower.number(node, "thickness");
-    let b = lower.b();
-    let thickness = b.clamp(thickness, 0.0, 1.0);
-    let back = b.f32(-0.25);
-    let position = [x, y.offset(b, back)];
-    let lines = hatch::lines(b, thickness);
-    tiling::tiled(lower, &position, &lines)
+    let thickness = lower.number(node, "thickness").clamp(0.0, 1.0);
+    tiling::tiled(lower, &[x, y.offset(-0.25)], &hatch::lines(thickness))
 }

@@ -4,10 +4,10 @@ use crate::componentwise::{difference, sum, transfer};
 use crate::pattern::angle::polar;
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::sawtooth::Sawtooth;
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -50,7 +50,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("degrees"),
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["center", "rotate"]),
     example: r##"{
   "version": 1,
   "name": "gradientangular_example",
@@ -64,26 +64,11 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["center", "rotate"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
     let degrees = lower.signal(node, "rotate");
-    let [x, y] = [0, 1].map(|i| difference(lower, &texcoord[i], &centre[i]));
+    let [x, y] = [0, 1].map(|i| difference(&texcoord[i], &centre[i]));
     let [angle, _] = polar(lower, [&x, &y]);
-    let b = lower.b();
-    let turn = b.f32(1.0 / 360.0);
-    let turns = degrees.scale(b, turn);
-    let angle = sum(lower, &angle, &turns);
-    vec![transfer(lower, &angle, &Sawtooth)]
+    let turned = sum(&angle, &(degrees * (1.0 / 360.0)));
+    vec![transfer(lower, &turned, &Sawtooth)]
 }

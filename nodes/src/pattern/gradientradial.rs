@@ -3,11 +3,11 @@
 use crate::componentwise::{difference, transfer};
 use crate::pattern::angle::polar;
 use crate::pattern::grid::TEXCOORD;
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -44,7 +44,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["center", "radius"]),
     example: r##"{
   "version": 1,
   "name": "gradientradial_example",
@@ -58,47 +58,24 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["center", "radius"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
     let radius = lower.number(node, "radius");
-    let [x, y] = [0, 1].map(|i| difference(lower, &texcoord[i], &centre[i]));
+    let [x, y] = [0, 1].map(|i| difference(&texcoord[i], &centre[i]));
     let [_, length] = polar(lower, [&x, &y]);
+    let height = (length * -(1.0 / radius)).offset(1.0);
     let b = lower.b();
-    let one = b.f32(1.0);
-    let inverse = b.div(one, radius);
-    let minus = b.neg(inverse);
-    let height = length.scale(b, minus).offset(b, one);
-    let zero = b.f32(0.0);
-    let clamp = Piecewise::clamp(b, zero, one);
-    let cone = transfer(lower, &height, &clamp);
-    let b = lower.b();
-    if cone.is_certain(b) {
+    let cone = transfer(
+        lower,
+        &height,
+        &Piecewise::clamp(b.float(0.0), b.float(1.0)),
+    );
+    if cone.is_certain() {
         return vec![cone];
     }
     // The density of the footprint is at most 1/(2π√det Σ), and the cone's volume πR²/3.
-    let (vx, vy, c) = (x.variance(b), y.variance(b), x.covariance(b, &y).total);
-    let (both, cross) = (b.mul(vx, vy), b.square(c));
-    let area = b.sub(both, cross);
-    let least = b.f32(1e-20);
-    let area = b.max(area, least);
-    let area = b.sqrt(area);
-    let square = b.square(radius);
-    let most = b.div(square, area);
-    let most = b.scale(most, 1.0 / 6.0);
-    let mean = b.max(cone.mean, least);
-    let share = b.div(most, mean);
-    let share = b.min(share, one);
-    vec![cone.scale(b, share).with_range([0.0, 1.0])]
+    let determinant = x.variance() * y.variance() - x.covariance(&y).total.square();
+    let most = radius.square() / determinant.max(1e-20).sqrt() * (1.0 / 6.0);
+    let share = (most / cone.mean.max(1e-20)).min(1.0);
+    vec![(cone * share).with_range([0.0, 1.0])]
 }

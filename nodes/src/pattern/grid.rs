@@ -3,10 +3,11 @@
 use crate::pattern::checkerboard::tiled;
 use crate::pattern::pulse::Pulse;
 use crate::pattern::separable::{Pattern, Term, Terms, filtered};
+use crate::pattern::unless::pattern_unless;
+use mipless_codegen::ir::{Builder, Float};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -44,7 +45,7 @@ static SPEC: NodeSpec = NodeSpec {
         STAGGERED,
     ],
     output: OutputType::Exactly(Type::Color3),
-    class,
+    class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset", "thickness"]),
     example: r#"{
   "version": 1,
   "name": "grid_example",
@@ -96,59 +97,14 @@ pub(crate) const STAGGERED: PortSpec = PortSpec::new(
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["uvtiling", "uvoffset", "thickness"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let staggered = lower.flag(node, "staggered");
     // A cell of the pattern has two rows where they alternate.
     let position = tiled(lower, node, [1.0, if staggered { 0.5 } else { 1.0 }]);
-    let thickness = lower.number(node, "thickness");
-    let b = lower.b();
-    let thickness = b.clamp(thickness, 0.0, 1.0);
+    let thickness = lower.number(node, "thickness").clamp(0.0, 1.0);
     let terms = Terms {
         key: format!("grid {staggered}"),
-        of: &|b, parameters| {
-            let one = b.f32(1.0);
-            let open = b.sub(one, parameters[0]);
-            let half = b.scale(open, 0.5);
-            let bevel = b.f32(0.0);
-            let mut pulse = |centre: f32, half| Pulse {
-                repeat: 1.0,
-                centre: b.f32(centre),
-                half,
-                bevel,
-                short: true,
-            };
-            let middle = pulse(0.5, half);
-            if !staggered {
-                return (1.0, vec![Term::product(middle, middle).times(-1.0)]);
-            }
-            let shifted = pulse(0.0, half);
-            let low = b.scale(half, 0.5);
-            let mut row = |centre: f32| Pulse {
-                repeat: 1.0,
-                centre: b.f32(centre),
-                half: low,
-                bevel,
-                short: true,
-            };
-            let (even, odd) = (row(0.25), row(0.75));
-            let rows = [(middle, even), (shifted, odd)];
-            (
-                1.0,
-                rows.map(|(x, y)| Term::product(x, y).times(-1.0)).to_vec(),
-            )
-        },
+        of: if staggered { &staggered_cells } else { &cells },
     };
     let pattern = Pattern {
         cell: &terms,
@@ -157,4 +113,31 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     };
     let lines = filtered(lower, &position, &pattern);
     vec![lines; 3]
+}
+
+/// A pulse around a centre.
+fn pulse<'b>(centre: f32, half: Float<'b>) -> Pulse<'b> {
+    Pulse {
+        repeat: 1.0,
+        centre: half.literal(centre),
+        half,
+        bevel: half.literal(0.0),
+        short: true,
+    }
+}
+
+/// 1 less what is open of each cell, for lines of a thickness.
+fn cells<'b>(_: &'b Builder, thickness: &[Float<'b>]) -> (f32, Vec<Term<'b>>) {
+    let middle = pulse(0.5, (1.0 - thickness[0]) * 0.5);
+    (1.0, vec![Term::product(middle, middle).times(-1.0)])
+}
+
+/// The same of two rows, of which the second is shifted by half a cell.
+fn staggered_cells<'b>(_: &'b Builder, thickness: &[Float<'b>]) -> (f32, Vec<Term<'b>>) {
+    let half = (1.0 - thickness[0]) * 0.5;
+    let rows = [(0.5, 0.25), (0.0, 0.75)].map(|(x, y)| {
+        let open = Term::product(pulse(x, half), pulse(y, half * 0.5));
+        open.times(-1.0)
+    });
+    (1.0, rows.to_vec())
 }

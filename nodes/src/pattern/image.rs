@@ -1,14 +1,11 @@
 //! `image`: a picture, tiled or clamped, that knows its moments.
 
-use std::sync::{Arc, LazyLock};
-
-use crate::picture::footprint::{Footprint, Parts};
-use crate::picture::gather::{Place, gather};
+use crate::picture::footprint::Parts;
+use crate::picture::gather::Reading;
 use crate::picture::port::{COLORSPACE, FILE, TEXCOORD, UVOFFSET, UVTILING, planes, position};
 use crate::picture::pyramid::{Address, Layout, bake};
-use crate::picture::read::{Pyramid, Tap};
-use mipless_codegen::ir::Numbers;
-use mipless_codegen::moments::{Mode, Signal};
+use crate::picture::read::Pyramid;
+use mipless_codegen::ir::Vec2;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
@@ -98,7 +95,7 @@ const PARTS: Parts = Parts {
     nodes: false,
 };
 
-fn address(lower: &Lower<'_>, node: &Node, port: &str) -> Address {
+fn address(lower: &Lower<'_, '_>, node: &Node, port: &str) -> Address {
     match lower.choice(node, port) {
         "clamp" => Address::Clamp,
         "mirror" => Address::Mirror,
@@ -106,7 +103,7 @@ fn address(lower: &Lower<'_>, node: &Node, port: &str) -> Address {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let channels = node.ty.components();
     let Some(picture) = lower.picture(node, "file") else {
         let mut bundle = lower.bundle(node, "default");
@@ -114,86 +111,29 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
         return bundle;
     };
     let (planes, key) = planes(lower, node, &picture, node.ty);
-    let ranges: Vec<[f32; 2]> = planes.planes.iter().map(|plane| range(plane)).collect();
-    let texels = planes.size.map(|n| n as f32);
+    let ranges = planes.ranges();
     let address = ["uaddressmode", "vaddressmode"].map(|port| address(lower, node, port));
-    let mode = lower.mode();
-    let key = format!("image {key} {address:?} {}", mode.filters());
-    let layout = Layout::new(planes.size, channels, address, mode.filters());
-    let table = layout.clone();
-    let baked = Arc::new(LazyLock::new(move || bake(&table, &planes)));
-    let (length, numbers) = (layout.len(), Arc::clone(&baked));
+    let filters = lower.mode().filters();
+    let key = format!("image {key} {address:?} {filters}");
+    let layout = Layout::new(planes.size, channels, address, filters);
     let name = format!("{}_pyramid", node.name);
-    let pyramid = Pyramid::new(lower, &key, &name, layout, || {
-        Numbers::lazy(length, move || numbers.0.clone())
+    let pyramid = Pyramid::new(lower, &key, &name, layout, move |layout| {
+        bake(layout, &planes)
     });
 
     let position = position(lower, node);
-    let b = lower.b();
-    let start = [0, 1].map(|axis| address[axis].reduced(b, &position[axis]));
-    let mut signals: Vec<Signal> = if mode.filters() {
-        let filter = lower.filter();
-        let (footprint, _) = Footprint::of(lower.b(), &position, texels, filter, PARTS);
-        let carries = matches!(mode, Mode::Local | Mode::Quad);
-        let filtered = pyramid.filtered(lower, carries);
-        let place = Place {
-            footprint: &footprint,
-            pixel: None,
-            more: start.to_vec(),
-        };
-        let gathered = gather(
-            lower,
-            &key,
-            (channels, carries),
-            &place,
-            |b, part, start| {
-                let [(x, across), (y, down)] = [0, 1].map(|axis| {
-                    let at = b.add(start[axis], part.offset[axis]);
-                    address[axis].place(b, at)
-                });
-                let numbers = b.call(&filtered, &[x, y, part.variance]);
-                let mut tap = Tap::of(&numbers, channels);
-                for [dx, dy] in &mut tap.gradient {
-                    (*dx, *dy) = (b.mul(*dx, across), b.mul(*dy, down));
-                }
-                tap
-            },
-        );
-        if carries {
-            gathered.signals(lower, &position, texels, &footprint)
-        } else {
-            let b = lower.b();
-            let mut signals: Vec<Signal> = (gathered.mean.iter())
-                .map(|&mean| Signal::certain(b, mean))
-                .collect();
-            if mode == Mode::Ensemble {
-                let [xx, _, yy] = footprint.covariance;
-                let sum = b.add(xx, yy);
-                let variance = b.scale(sum, 0.5);
-                let removed = pyramid.removed(lower, variance, move |length| {
-                    let rows = move || baked.1.iter().flatten().map(|&x| x as f32).collect();
-                    Numbers::lazy(length, rows)
-                });
-                lower.algebra.attach_joint(&mut signals, &removed);
-            }
-            signals
+    let start = [0, 1].map(|axis| address[axis].reduced(&position[axis]));
+    let reading = Reading::new(lower, &pyramid, &position, PARTS, start);
+    let signals = reading.signals(lower, &key, |part, start, read| {
+        let [(x, across), (y, down)] =
+            [0, 1].map(|axis| address[axis].place(start[axis].float() + part.offset[axis]));
+        let mut tap = read([x, y]);
+        for Vec2([dx, dy]) in &mut tap.gradient {
+            (*dx, *dy) = (*dx * across, *dy * down);
         }
-    } else {
-        let point = pyramid.point(lower);
-        let b = lower.b();
-        let [x, y] = [0, 1].map(|axis| address[axis].place(b, start[axis]).0);
-        let means = b.call(&point, &[x, y]);
-        means.iter().map(|&mean| Signal::certain(b, mean)).collect()
-    };
-    for (signal, range) in signals.iter_mut().zip(ranges) {
-        signal.range = range;
-    }
-    signals
-}
-
-/// The least and the largest number.
-fn range(plane: &[f64]) -> [f32; 2] {
-    let low = plane.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = plane.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    [low as f32, high as f32]
+        tap
+    });
+    (signals.into_iter().zip(ranges))
+        .map(|(signal, range)| signal.with_range(range))
+        .collect()
 }

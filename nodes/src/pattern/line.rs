@@ -4,10 +4,10 @@ use crate::componentwise::numbers;
 use crate::pattern::figure::{Figure, drawn};
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::region::Outline;
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 use std::f64::consts::PI;
 
@@ -63,7 +63,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["center", "radius", "point1", "point2"]),
     example: r##"{
   "version": 1,
   "name": "line_example",
@@ -77,42 +77,22 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["center", "radius", "point1", "point2"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
 /// Corners of a half circle; their number keeps the area.
 const CORNERS: usize = 24;
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     drawn(lower, node, |lower| {
         let radius = lower.number(node, "radius");
-        let (from, to) = (
-            numbers(lower, node, "point1"),
-            numbers(lower, node, "point2"),
-        );
-        let b = lower.b();
-        let (dx, dy) = (b.sub(to[0], from[0]), b.sub(to[1], from[1]));
-        let square = b.dot(&[dx, dy], &[dx, dy]);
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        let distinct = b.lt(zero, square);
-        let square = b.select(distinct, square, one);
-        let length = b.sqrt(square);
-        let (c, s) = (b.div(dx, length), b.div(dy, length));
-        let c = b.select(distinct, c, one);
-        let (c, s) = (b.mul(c, radius), b.mul(s, radius));
-        let minus = b.neg(s);
+        let [from, to] = ["point1", "point2"].map(|port| numbers(lower, node, port));
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let square = dx * dx + dy * dy;
+        let distinct = square.gt(0.0);
+        let length = distinct.select(square, 1.0).sqrt();
+        let c = distinct.select(dx / length, 1.0) * radius;
+        let s = dy / length * radius;
         Figure::Line {
             outline: capsule(),
-            axes: [[c, s], [minus, c], [dx, dy]],
+            axes: [[c, s], [-s, c], [dx, dy]],
             from: [from[0], from[1]],
         }
     })

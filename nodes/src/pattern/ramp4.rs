@@ -1,13 +1,11 @@
 //! A gradient between four corners.
 
 use crate::componentwise::{product, transfer};
-use crate::pattern::ramplr::between;
+use crate::pattern::ramp::between;
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Type,
-};
+use mipless_graph::{Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "ramp4",
@@ -60,7 +58,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("uv"),
     ],
     output: OutputType::Widest,
-    class,
+    class: |inputs| pattern_unless(inputs, &["valuetl", "valuetr", "valuebl", "valuebr"]),
     example: r##"{
   "version": 1,
   "name": "ramp4_example",
@@ -74,23 +72,10 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a value varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["valuetl", "valuetr", "valuebl", "valuebr"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let texcoord = lower.bundle(node, "texcoord");
     let b = lower.b();
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-    let clamp = Piecewise::clamp(b, zero, one);
+    let clamp = Piecewise::clamp(b.float(0.0), b.float(1.0));
     // What the clamps distort is in their product as well.
     let shares = lower.algebra.shares;
     lower.algebra.shares = true;
@@ -101,15 +86,12 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
     // tl + s (tr − tl) + t (bl − tl) + st (br − tr − bl + tl).
     (0..corners[0].len())
         .map(|i| {
-            let [tl, tr, bl, br] = [0, 1, 2, 3].map(|k| corners[k][i].clone());
-            let along = between(lower, &tl, &tr, &s);
-            let b = lower.b();
-            let (down, across) = (bl.sub(b, &tl), br.sub(b, &tr));
-            let twist = across.sub(b, &down);
-            let (down, twist) = (product(lower, &down, &t), product(lower, &twist, &both));
-            let b = lower.b();
-            let flat = along.add(b, &down);
-            flat.add(b, &twist)
+            let [tl, tr, bl, br] = [0, 1, 2, 3].map(|k| &corners[k][i]);
+            let along = between(lower, tl, tr, &s);
+            let down = bl - tl;
+            let twist = (br - tr) - &down;
+            let down = product(lower, &down, &t);
+            along + down + product(lower, &twist, &both)
         })
         .collect()
 }

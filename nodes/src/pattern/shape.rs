@@ -4,10 +4,10 @@ use crate::pattern::circle::EDGE;
 use crate::pattern::figure::{Figure, drawn_softly};
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::region::Outline;
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -79,7 +79,7 @@ static SPEC: NodeSpec = NodeSpec {
         EDGE,
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["center", "radius", "rotate", "edge"]),
     example: r##"{
   "version": 1,
   "name": "shape_example",
@@ -93,19 +93,7 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["center", "radius", "rotate", "edge"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let edge = lower.number(node, "edge");
     drawn_softly(lower, node, Some(edge), |lower| {
         let sides = lower.integer(node, "sides").clamp(3, 64) as usize;
@@ -117,14 +105,12 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
             Outline::around(sides, &[1.0], first)
         };
         let [radius, degrees] = ["radius", "rotate"].map(|port| lower.number(node, port));
-        let b = lower.b();
-        let angle = b.scale(degrees, std::f32::consts::PI / 180.0);
-        let (sine, cosine) = (b.sin(angle), b.cos(angle));
-        let (s, c) = (b.mul(sine, radius), b.mul(cosine, radius));
-        let (minus, zero) = (b.neg(s), b.f32(0.0));
+        let angle = degrees * (std::f32::consts::PI / 180.0);
+        let (s, c) = (angle.sin() * radius, angle.cos() * radius);
+        let zero = lower.b().float(0.0);
         Figure::Polygon {
             outline,
-            axes: [[c, s], [minus, c], [zero, zero]],
+            axes: [[c, s], [-s, c], [zero, zero]],
         }
     })
 }

@@ -6,141 +6,101 @@
 //! the measure alone is left, which is exact as well.
 
 use super::measure::Measure;
-use super::region::Outline;
+use super::region::{Axes, Outline};
 use super::separable::rest;
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Sym2, Vec2};
 use mipless_codegen::moments::{Mode, Normal};
 
 /// Where the edge is from the mean.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Edge {
+pub(crate) struct Edge<'b> {
     /// The signed distance, positive inside.
-    pub(crate) distance: Value,
+    pub(crate) distance: Float<'b>,
     /// Its gradient, of length 1.
-    pub(crate) normal: [Value; 2],
+    pub(crate) normal: Vec2<'b>,
 }
 
 /// No ramp is narrower than this, in units of the position: hinges keep their digits.
 const NARROWEST: f32 = 1e-5;
 
 /// The width of a ramp, which divides.
-pub(crate) fn width(b: &mut Builder, width: Value) -> Value {
-    let least = b.f32(NARROWEST);
-    b.max(width, least)
+pub(crate) fn width(width: Float<'_>) -> Float<'_> {
+    width.max(NARROWEST)
 }
 
-impl Edge {
+impl<'b> Edge<'b> {
     /// Of a disc around `back`, the centre from the mean.
-    pub(crate) fn of_disc(b: &mut Builder, back: [Value; 2], radius: Value) -> Self {
-        let square = b.dot(&back, &back);
-        let (length, away) = direction(b, back, square);
+    pub(crate) fn of_disc(back: [Float<'b>; 2], radius: Float<'b>) -> Self {
+        let (length, away) = direction(back, Vec2(back).norm2());
         Self {
-            distance: b.sub(radius, length),
+            distance: radius - length,
             normal: away,
         }
     }
 
     /// Of a polygon; its axes as [`Outline::measure`] takes them.
-    pub(crate) fn of_polygon(
-        lower: &mut Lower<'_>,
-        outline: &Outline,
-        axes: [[Value; 2]; 4],
-    ) -> Self {
+    pub(crate) fn of_polygon(lower: &mut Lower<'_, 'b>, outline: &Outline, axes: Axes<'b>) -> Self {
         let key = format!("outline distance {outline:?}");
         let function = lower.function(&key, |module| nearest(module, outline));
         let b = lower.b();
-        let (far, zero) = (b.f32(f32::MAX), b.f32(0.0));
-        let count = b.u32(outline.vertices.len() as u32);
-        let captures: Vec<Value> = axes.into_iter().flatten().collect();
-        let state = b.fold(&function, count, &[far, zero, zero, zero], &captures);
+        let count = b.uint(outline.vertices.len() as u32);
+        let start = [f32::MAX, 0.0, 0.0, 0.0].map(|x| b.float(x));
+        let [square, x, y, parity] = b.fold(&function, count, start, axes);
         // Outside, the distance grows away from the nearest point, and is negative.
-        let (length, towards) = direction(b, [state[1], state[2]], state[0]);
-        let half = b.f32(0.5);
-        let inside = b.lt(half, state[3]);
-        let out = b.neg(length);
-        let distance = b.select(inside, length, out);
-        let normal = towards.map(|v| {
-            let away = b.neg(v);
-            b.select(inside, away, v)
-        });
-        Self { distance, normal }
+        let (length, towards) = direction([x, y], square);
+        let inside = parity.gt(0.5);
+        Self {
+            distance: inside.select(length, -length),
+            normal: towards.map(|v| inside.select(-v, v)),
+        }
     }
 }
 
 /// A vector's length and direction, from its square.
-fn direction(b: &mut Builder, vector: [Value; 2], square: Value) -> (Value, [Value; 2]) {
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-    let length = b.sqrt(square);
-    let directed = b.lt(zero, length);
-    let guarded = b.select(directed, length, one);
-    let [x, y] = vector.map(|v| b.div(v, guarded));
-    (length, [b.select(directed, x, one), y])
+fn direction<'b>([x, y]: [Float<'b>; 2], square: Float<'b>) -> (Float<'b>, Vec2<'b>) {
+    let length = square.sqrt();
+    let directed = length.gt(0.0);
+    let guarded = directed.select(length, 1.0);
+    let direction = [directed.select(x / guarded, 1.0), y / guarded];
+    (length, Vec2(direction))
 }
 
 /// The body of a fold over the edges of a polygon: the least squared distance from the origin, the
 /// point where it is, and the parity of the edges that a ray meets.
 fn nearest(module: &mut Module, outline: &Outline) -> FunctionRef {
-    let again = outline.vertices.first();
-    let rows: Vec<f32> = (outline.vertices.iter().chain(again))
-        .flatten()
-        .copied()
-        .collect();
-    let table = module.table("outline", rows);
-    let mut b = Builder::new("outline_distance", "The nearest point of one more edge.");
-    let index = b.param("index", Type::U32);
-    let [least, near_x, near_y, parity] =
-        ["square", "near_x", "near_y", "parity"].map(|name| b.param_f32(name));
-    let axes = ["o", "a", "b", "e"]
-        .map(|name| [format!("{name}_x"), format!("{name}_y")].map(|name| b.param_f32(name)));
-    let three = b.u32(3);
-    let first = b.mul_u(index, three);
-    let mut vertex = |from: u32| {
-        let row = [0, 1, 2].map(|i| {
-            let shift = b.u32(from + i);
-            let at = b.add_u(first, shift);
-            b.load(table, at)
-        });
-        [0, 1].map(|k| {
-            let part = b.dot(&row, &[axes[1][k], axes[2][k], axes[3][k]]);
-            b.add(axes[0][k], part)
-        })
-    };
-    let ([x1, y1], [x2, y2]) = (vertex(0), vertex(3));
-    let along = [b.sub(x2, x1), b.sub(y2, y1)];
-    let square = b.dot(&along, &along);
-    let guarded = b.offset(square, 1e-30);
-    let share = b.dot(&along, &[x1, y1]);
-    let share = b.neg(share);
-    let share = b.div(share, guarded);
-    let share = b.clamp(share, 0.0, 1.0);
-    let place = [(x1, along[0]), (y1, along[1])].map(|(start, along)| {
-        let step = b.mul(share, along);
-        b.add(start, step)
+    let table = module.table("outline", outline.rows());
+    let b = &Builder::new("outline_distance", "The nearest point of one more edge.");
+    let index = b.uint_param("index");
+    let names = ["square", "near_x", "near_y", "parity"];
+    let [least, near_x, near_y, parity] = names.map(|name| b.float_param(name));
+    let axes = Outline::declare_axes(b);
+    let first = index * 3;
+    let [start, end] = [0, 3].map(|from: u32| {
+        let numbers = [0, 1, 2].map(|i: u32| b.load(table, first + (from + i)));
+        Vec2(super::region::vertex(numbers, axes))
     });
-    let distance = b.dot(&place, &place);
-    let nearer = b.lt(distance, least);
+
+    // The nearest point of the edge.
+    let along = end - start;
+    let share = (-along.dot(start) / (along.norm2() + 1e-30)).clamp(0.0, 1.0);
+    let place = start + along.map(|x| share * x);
+    let distance = place.norm2();
+    let nearer = distance.lt(least);
+
     // As of `Outline::holds`.
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-    let (up, down) = (b.lt(zero, y1), b.lt(zero, y2));
-    let (up, down) = (b.select(up, one, zero), b.select(down, one, zero));
-    let rises = b.sub(down, up);
-    let (p, q) = (b.mul(x1, y2), b.mul(x2, y1));
-    let cross = b.sub(p, q);
-    let right = b.mul(cross, rises);
-    let meets = b.lt(zero, right);
-    let other = b.sub(one, parity);
+    let ([x1, y1], [x2, y2]) = (*start, *end);
+    let [up, down] = [y1, y2].map(|y| y.gt(0.0).select(1.0, 0.0));
+    let cross = x1 * y2 - x2 * y1;
+    let meets = (cross * (down - up)).gt(0.0);
     let results = [
-        b.select(nearer, distance, least),
-        b.select(nearer, place[0], near_x),
-        b.select(nearer, place[1], near_y),
-        b.select(meets, other, parity),
+        nearer.select(distance, least),
+        nearer.select(place[0], near_x),
+        nearer.select(place[1], near_y),
+        meets.select(1.0 - parity, parity),
     ];
-    for (name, value) in ["square", "near_x", "near_y", "parity"]
-        .into_iter()
-        .zip(results)
-    {
+    for (name, value) in names.into_iter().zip(results) {
         b.result(name, value);
     }
     b.finish(module)
@@ -148,108 +108,72 @@ fn nearest(module: &mut Module, outline: &Outline) -> FunctionRef {
 
 /// E of a ramp at a distance with this standard deviation, and its first and second derivative:
 /// (E[max(x + w/2, 0)] − E[max(x − w/2, 0)])/w and so on.
-fn ramp(b: &mut Builder, at: Value, width: Value, [sd, inverse]: [Value; 2]) -> [Value; 3] {
+fn ramp<'b>(at: Float<'b>, width: Float<'b>, [sd, inverse]: [Float<'b>; 2]) -> [Float<'b>; 3] {
     // Narrower ones blur no less, and their hinges lose their digits.
-    let least = b.scale(sd, 0.02);
-    let width = b.max(width, least);
-    let half = b.scale(width, 0.5);
-    let one = b.f32(1.0);
-    let inverse_width = b.div(one, width);
-    let (start, end) = (b.add(at, half), b.sub(at, half));
-    let (n, m) = (Normal::at(b, start, inverse), Normal::at(b, end, inverse));
-    let (up, down) = (n.hinge(b, start, sd), m.hinge(b, end, sd));
-    let mean = b.sub(up, down);
-    let mean = b.mul(mean, inverse_width);
+    let width = width.max(sd * 0.02);
+    let half = width * 0.5;
+    let inverse_width = 1.0 / width;
+    let (start, end) = (at + half, at - half);
+    let [n, m] = [start, end].map(|place| Normal::at(place, inverse));
+    let mean = (n.hinge(start, sd) - m.hinge(end, sd)) * inverse_width;
     // Beyond the ramp two large hinges differ by its width, less their roundings.
-    let far = b.f32(6.0);
-    let passed = b.lt(far, m.z);
-    let mean = b.select(passed, one, mean);
-    let slope = b.sub(n.below, m.below);
-    let bend = b.sub(n.density, m.density);
-    let bend = b.mul(bend, inverse);
+    let mean = m.z.gt(6.0).select(1.0, mean);
     [
         mean,
-        b.mul(slope, inverse_width),
-        b.mul(bend, inverse_width),
+        (n.below - m.below) * inverse_width,
+        (n.density - m.density) * inverse * inverse_width,
     ]
 }
 
 /// The value of the ramp at a point.
-pub(crate) fn value(b: &mut Builder, edge: &Edge, width: Value) -> Value {
-    let share = b.div(edge.distance, width);
-    let share = b.offset(share, 0.5);
-    b.clamp(share, 0.0, 1.0)
+pub(crate) fn value<'b>(edge: &Edge<'b>, width: Float<'b>) -> Float<'b> {
+    (edge.distance / width + 0.5).clamp(0.0, 1.0)
 }
 
 /// The field of a figure with a ramp, from the measure of the sharp one.
-pub(crate) fn field(
-    lower: &mut Lower<'_>,
-    measure: Measure,
-    edge: &Edge,
-    width: Value,
-    spread: &Spread,
-) -> Field {
-    let mode = lower.mode();
-    let b = lower.b();
-    let [nx, ny] = edge.normal;
-    let [xx, xy, yy] = spread.covariance;
-    let (px, py) = (b.dot(&[xx, xy], &[nx, ny]), b.dot(&[xy, yy], &[nx, ny]));
-    let variance = b.dot(&[nx, ny], &[px, py]);
-    let raised = b.offset(variance, 1e-12);
-    let sd = b.sqrt(raised);
-    let one = b.f32(1.0);
-    let inverse = b.div(one, sd);
-    let zero = b.f32(0.0);
-    let step = Normal::at(b, edge.distance, inverse);
-    let soft = ramp(b, edge.distance, width, [sd, inverse]);
-    let mean = b.sub(soft[0], step.below);
-    let density = b.mul(step.density, inverse);
-    let slope = b.sub(soft[1], density);
-    let curved = b.mul(step.z, density);
-    let curved = b.mul(curved, inverse);
-    let bend = b.add(soft[2], curved);
+pub(crate) fn field<'b>(
+    mode: Mode,
+    measure: Measure<'b>,
+    edge: &Edge<'b>,
+    width: Float<'b>,
+    spread: &Spread<'b>,
+) -> Field<'b> {
+    let Edge { distance, normal } = *edge;
+    let variance = normal.dot(spread.covariance.times(normal));
+    let sd = (variance + 1e-12).sqrt();
+    let inverse = 1.0 / sd;
+    let step = Normal::at(distance, inverse);
+    let soft = ramp(distance, width, [sd, inverse]);
+
+    // What the ramp is more than a step.
+    let density = step.density * inverse;
+    let slope = soft[1] - density;
+    let bend = soft[2] + step.z * density * inverse;
     let [value, dx, dy, hxx, hxy, hyy] = measure;
-    let value = b.clamp(value, 0.0, 1.0);
-    let slopes = matches!(mode, Mode::Local | Mode::Quad);
-    let bends = mode == Mode::Quad;
-    let filtered = b.add(value, mean);
+    let value = value.clamp(0.0, 1.0);
+    let zero = value.literal(0.0);
     let mut field = Field {
-        mean: b.clamp(filtered, 0.0, 1.0),
-        gradient: [zero; 2],
-        hessian: [zero; 3],
+        mean: (value + (soft[0] - step.below)).clamp(0.0, 1.0),
+        gradient: Vec2::splat(zero),
+        hessian: Sym2::splat(zero),
         rest: zero,
     };
-    if slopes {
-        field.gradient = [(dx, nx), (dy, ny)].map(|(d, n)| {
-            let part = b.mul(slope, n);
-            b.add(d, part)
-        });
+    if matches!(mode, Mode::Local | Mode::Quad) {
+        field.gradient = Vec2([dx, dy]).zip(normal, |d, n| d + slope * n);
     }
-    if bends {
-        let outer = [b.square(nx), b.mul(nx, ny), b.square(ny)];
-        field.hessian = [(hxx, outer[0]), (hxy, outer[1]), (hyy, outer[2])].map(|(h, o)| {
-            let part = b.mul(bend, o);
-            b.add(h, part)
-        });
+    if mode == Mode::Quad {
+        field.hessian = Sym2([hxx, hxy, hyy]).zip(normal.outer(), |h, o| h + bend * o);
     }
     if mode.spreads() {
         // E[R²] = P + E[R²(X)] − E[S(X)]: a squared ramp rises later by w/6, within 0.816 of the
         // spread. Within the ramp its linear response is all there is.
-        let later = b.scale(width, -1.0 / 6.0);
-        let at = b.add(edge.distance, later);
-        let narrower = b.scale(width, 0.816_496_6);
-        let squared = ramp(b, at, narrower, [sd, inverse]);
-        let beyond = b.sub(squared[0], step.below);
-        let second = b.add(value, beyond);
-        let square = b.square(field.mean);
-        let total = b.sub(second, square);
-        let left = rest(b, &mut field, spread, total);
-        let wide = b.square(width);
-        let wide = b.scale(wide, 0.16);
-        let sum = b.add(variance, wide);
-        let sum = b.offset(sum, 1e-12);
-        let share = b.div(variance, sum);
-        field.rest = b.mul(left, share);
+        let later = distance + width * (-1.0 / 6.0);
+        let squared = ramp(later, width * 0.816_496_6, [sd, inverse]);
+        let second = value + (squared[0] - step.below);
+        let total = second - field.mean.square();
+        let left = rest(&mut field, spread, total);
+        let share = variance / (variance + width.square() * 0.16 + 1e-12);
+        field.rest = left * share;
     }
     field
 }

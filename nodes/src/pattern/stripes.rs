@@ -1,10 +1,10 @@
 //! Parallel stripes.
 
-use mipless_codegen::moments::SquareWave;
+use crate::pattern::unless::pattern_unless;
+use mipless_codegen::moments::{Signal, SquareWave};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 use crate::componentwise::{product, sum, transfer};
@@ -61,7 +61,7 @@ static SPEC: NodeSpec = NodeSpec {
         .range(Range::hard(0.0, 1.0)),
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["frequency", "rotate", "width"]),
     example: r#"{
   "version": 1,
   "name": "stripes_example",
@@ -75,30 +75,23 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    let other = ["frequency", "rotate", "width"]
-        .into_iter()
-        .any(|port| inputs.varies(port));
-    if other {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let texcoord = lower.bundle(node, "texcoord");
     let [frequency, rotate] = ["frequency", "rotate"].map(|port| lower.signal(node, port));
-    let width = lower.number(node, "width");
-    let [cosine, sine] = turn(lower, &rotate);
-    let (along, across) = (
-        product(lower, &texcoord[0], &cosine),
-        product(lower, &texcoord[1], &sine),
-    );
-    let distance = sum(lower, &along, &across);
+    let width = lower.number(node, "width").clamp(0.0, 1.0);
+    let distance = along(lower, &texcoord, &rotate);
     let phase = product(lower, &distance, &frequency);
-    let b = lower.b();
-    let width = b.clamp(width, 0.0, 1.0);
     vec![transfer(lower, &phase, &SquareWave { width })]
+}
+
+/// The distance of a position from the origin along a direction in degrees.
+pub(crate) fn along<'b>(
+    lower: &mut Lower<'_, 'b>,
+    texcoord: &[Signal<'b>],
+    rotate: &Signal<'b>,
+) -> Signal<'b> {
+    let [cosine, sine] = turn(lower, rotate);
+    let x = product(lower, &texcoord[0], &cosine);
+    let y = product(lower, &texcoord[1], &sine);
+    sum(&x, &y)
 }

@@ -11,8 +11,8 @@
 //! Correlations are limited to [`MOST_CORRELATED`]: 10:1 at 45 degrees. A longer footprint keeps its
 //! spread along both coordinates and is blurred across.
 
-use super::pulse::Axis;
-use mipless_codegen::ir::{Builder, Value};
+use super::pulse::{Axis, Derivatives};
+use mipless_codegen::ir::{Builder, Float, Scalar, Scalars, Sym2, Uint};
 
 /// The largest correlation of the coordinates that is followed.
 const MOST_CORRELATED: f32 = 0.981;
@@ -36,172 +36,146 @@ const SETTLED: f32 = 0.55;
 /// Where the integral over t ends.
 const REACH: f32 = 3.7;
 
-/// The nodes of the integral over t.
-pub(crate) struct Taps {
+/// What is known of each node of the integral over t.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nodes<'b> {
     /// w.
-    pub(crate) along: [Value; 2],
+    pub(crate) along: [Float<'b>; 2],
     /// The standard deviations that are left, at least 1e-6.
-    pub(crate) sd: [Value; 2],
-    /// Their correlation.
-    pub(crate) correlation: Value,
+    pub(crate) sd: [Float<'b>; 2],
     /// The first node.
-    pub(crate) start: Value,
+    pub(crate) start: Float<'b>,
     /// From a node to the next.
-    pub(crate) step: Value,
-    /// How many, as u32.
-    pub(crate) count: Value,
+    pub(crate) step: Float<'b>,
+    /// The correlation that is left.
+    pub(crate) correlation: Float<'b>,
 }
 
-impl Taps {
+/// The nodes of the integral over t.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Taps<'b> {
+    /// All of them.
+    pub(crate) nodes: Nodes<'b>,
+    /// How many.
+    pub(crate) count: Uint<'b>,
+}
+
+impl<'b> Taps<'b> {
     /// The nodes for this covariance.
-    pub(crate) fn of(b: &mut Builder, [xx, xy, yy]: [Value; 3]) -> Self {
-        let (one, zero) = (b.f32(1.0), b.f32(0.0));
-        let [sx, sy] = [xx, yy].map(|v| {
-            let v = b.offset(v, 1e-12);
-            b.sqrt(v)
-        });
-        let both = b.mul(sx, sy);
-        let magnitude = b.abs(xy);
-        let rho = b.div(magnitude, both);
-        let most = b.f32(MOST_CORRELATED);
-        let rho = b.min(rho, most);
-        let expanded = b.f32(EXPANDED);
-        let kept = b.min(rho, expanded);
-        let (beyond, rest) = (b.sub(rho, kept), b.sub(one, kept));
-        let shared = b.div(beyond, rest);
-        let left = b.sub(one, shared);
-        let (root, root_left) = (b.sqrt(shared), b.sqrt(left));
-        let negative = b.lt(xy, zero);
-        let minus = b.f32(-1.0);
-        let sign = b.select(negative, minus, one);
-        let sd = [sx, sy].map(|s| b.mul(s, root_left));
+    pub(crate) fn of(covariance: Sym2<'b>) -> Self {
+        let [xx, xy, yy] = *covariance;
+        let [sx, sy] = [xx, yy].map(|v| (v + 1e-12).sqrt());
+        let rho = (xy.abs() / (sx * sy)).min(MOST_CORRELATED);
+        let kept = rho.min(EXPANDED);
+        let shared = (rho - kept) / (1.0 - kept);
+        let left = 1.0 - shared;
+        let (root, root_left) = (shared.sqrt(), left.sqrt());
+        let sign = xy.lt(0.0).select(-1.0, 1.0);
+
         // 1/step² = 1/1.6² + r/(1.6² (1 − r)).
-        let ratio = b.div(shared, left);
-        let ratio = b.scale(ratio, 1.0 / (SMOOTH_STEP * SMOOTH_STEP));
-        let inverse = b.offset(ratio, 1.0 / (WIDEST_STEP * WIDEST_STEP));
-        let inverse = b.sqrt(inverse);
+        let ratio = shared / left * (1.0 / (SMOOTH_STEP * SMOOTH_STEP));
+        let inverse = (ratio + 1.0 / (WIDEST_STEP * WIDEST_STEP)).sqrt();
         // One node is always in the middle: as the footprint turns, nodes come and go where their
         // weight is next to nothing.
-        let half = b.scale(inverse, REACH);
-        let half = b.floor(half);
+        let half = (inverse * REACH).floor();
         // Three nodes at the distance that gives them the variance 1 have nearly the weights of
         // Gauss–Hermite.
-        let few = b.f32(THREE_NODES);
-        let few = b.lt(shared, few);
-        let (three, inverse_three) = (b.f32(1.039_3), b.f32(1.0 / 3f32.sqrt()));
-        let half = b.select(few, one, half);
-        let inverse = b.select(few, inverse_three, inverse);
-        let stretch = b.select(few, three, one);
-        let along = b.mul(root, stretch);
-        let (wx, wy) = (b.mul(along, sx), b.mul(along, sy));
-        let wy = b.mul(sign, wy);
+        let few = shared.lt(THREE_NODES);
+        let half = few.select(1.0, half);
+        let step = 1.0 / few.select(1.0 / 3f32.sqrt(), inverse);
+        let along = root * few.select(1.039_3, 1.0);
         // Without a shared part there is nothing to integrate.
-        let alone = b.le(shared, zero);
-        let half = b.select(alone, zero, half);
-        let step = b.div(one, inverse);
-        let start = b.mul(half, step);
-        let start = b.neg(start);
-        let count = b.scale(half, 2.0);
-        let count = b.offset(count, 1.0);
-        let count = b.trunc_i(count);
-        let count = b.cast_u(count);
+        let half = shared.le(0.0).select(0.0, half);
         Self {
-            along: [wx, wy],
-            sd,
-            correlation: b.mul(sign, kept),
-            start,
-            step,
-            count,
+            nodes: Nodes {
+                along: [along * sx, sign * (along * sy)],
+                sd: [sx * root_left, sy * root_left],
+                start: -(half * step),
+                step,
+                correlation: sign * kept,
+            },
+            count: (half * 2.0 + 1.0).to_int().to_uint(),
         }
     }
 
     /// The same for a function that repeats after 1 along both coordinates: where what is left of both
     /// covers it, one node is all.
-    pub(super) fn of_periodic(self, b: &mut Builder) -> Self {
-        let settled = b.f32(SETTLED);
-        let [x, y] = self.sd.map(|sd| b.lt(settled, sd));
-        let both = b.and(x, y);
-        let (zero, once) = (b.f32(0.0), b.u32(1));
+    pub(super) fn of_periodic(self) -> Self {
+        let [x, y] = self.nodes.sd.map(|sd| sd.gt(SETTLED));
+        let both = x & y;
         Self {
-            start: b.select(both, zero, self.start),
-            count: b.select(both, once, self.count),
-            ..self
+            nodes: Nodes {
+                start: both.select(0.0, self.nodes.start),
+                ..self.nodes
+            },
+            count: both.select(1, self.count),
+        }
+    }
+}
+
+impl<'b> Nodes<'b> {
+    /// The parameters of a function that takes it over.
+    pub(crate) fn declare(b: &'b Builder) -> Self {
+        Self {
+            along: ["along_x", "along_y"].map(|name| b.float_param(name)),
+            sd: ["sd_x", "sd_y"].map(|name| b.float_param(name)),
+            start: b.float_param("start"),
+            step: b.float_param("step"),
+            correlation: b.float_param("correlation"),
         }
     }
 
-    /// The numbers that the body of the fold takes, by [`Self::NAMES`].
-    pub(crate) fn captures(&self) -> [Value; 7] {
-        let ([wx, wy], [sx, sy]) = (self.along, self.sd);
-        [wx, wy, sx, sy, self.start, self.step, self.correlation]
+    /// The two coordinates at a node, and the node's weight.
+    pub(crate) fn at(&self, index: Uint<'b>, place: [Float<'b>; 2]) -> ([Axis<'b>; 2], Float<'b>) {
+        let t = self.start + index.to_float() * self.step;
+        let axes = [0, 1].map(|k| Axis {
+            mean: place[k] + self.along[k] * t,
+            sd: self.sd[k],
+        });
+        (axes, (t.square() * -0.5).exp())
+    }
+}
+
+impl<'b> Scalars<'b> for Nodes<'b> {
+    fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
+        (self.along, self.sd, self.start, self.step, self.correlation).each(visit);
     }
 
-    /// Names of the captures.
-    pub(crate) const NAMES: [&str; 7] = [
-        "along_x",
-        "along_y",
-        "sd_x",
-        "sd_y",
-        "start",
-        "step",
-        "correlation",
-    ];
-
-    /// Inside the body: the two coordinates at this node, and the node's weight.
-    pub(crate) fn node(
-        b: &mut Builder,
-        index: Value,
-        [x, y]: [Value; 2],
-        captures: [Value; 7],
-    ) -> ([Axis; 2], Value) {
-        let [wx, wy, sx, sy, start, step, _] = captures;
-        let number = b.float_u(index);
-        let t = b.mul(number, step);
-        let t = b.add(start, t);
-        let square = b.square(t);
-        let exponent = b.scale(square, -0.5);
-        let weight = b.exp(exponent);
-        let axes = [(x, wx, sx), (y, wy, sy)].map(|(mean, along, sd)| {
-            let shift = b.mul(along, t);
-            let mean = b.add(mean, shift);
-            Axis { mean, sd }
-        });
-        (axes, weight)
+    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
+        Self {
+            along: self.along.replaced(next),
+            sd: self.sd.replaced(next),
+            start: self.start.replaced(next),
+            step: self.step.replaced(next),
+            correlation: self.correlation.replaced(next),
+        }
     }
 }
 
 /// The mean of a product of functions of two Gaussians and its derivatives, each times as many σ, from
 /// those of the factors: the first four terms of Mehler's series, as far as third derivatives go.
-pub(super) fn joined(
-    b: &mut Builder,
-    x: [Value; 4],
-    y: [Value; 4],
-    correlation: Value,
-) -> [Value; 6] {
-    let square = b.square(correlation);
-    let cube = b.mul(square, correlation);
-    let (half, sixth) = (b.scale(square, 0.5), b.scale(cube, 1.0 / 6.0));
-    let series = [b.f32(1.0), correlation, half, sixth];
-    // The series of y's derivatives of order k.
-    let [value, slope, bend] = [0, 1, 2].map(|k| {
-        let terms = series.iter().zip(&y[k..]);
-        terms.map(|(&c, &y)| b.mul(c, y)).collect::<Vec<Value>>()
-    });
-    [
-        b.dot(&x, &value),
-        b.dot(&x[1..], &value),
-        b.dot(&x, &slope),
-        b.dot(&x[2..], &value),
-        b.dot(&x[1..], &slope),
-        b.dot(&x, &bend),
-    ]
+pub(super) fn joined<'b>(
+    x: Derivatives<'b>,
+    y: Derivatives<'b>,
+    correlation: Float<'b>,
+) -> [Float<'b>; 6] {
+    let b = correlation.builder();
+    let square = correlation.square();
+    let sixth = square * correlation * (1.0 / 6.0);
+    let series = [b.float(1.0), correlation, square * 0.5, sixth];
+    // The derivatives of x from one order on times the series of y's derivatives from another.
+    let of = |from: usize, order: usize| {
+        let terms = series.iter().zip(&y[order..]).map(|(&c, &y)| c * y);
+        b.sum(x[from..].iter().zip(terms).map(|(&x, term)| x * term))
+    };
+    [of(0, 0), of(1, 0), of(0, 1), of(2, 0), of(1, 1), of(0, 2)]
 }
 
 /// Derivatives times σ as derivatives.
-pub(super) fn by_place(b: &mut Builder, parts: &mut [Value], sd: [Value; 2]) {
-    let one = b.f32(1.0);
-    let [x, y] = sd.map(|sd| b.div(one, sd));
-    let factors = [x, y, b.square(x), b.mul(x, y), b.square(y)];
+pub(super) fn by_place<'b>(parts: &mut [Float<'b>], sd: [Float<'b>; 2]) {
+    let [x, y] = sd.map(|sd| 1.0 / sd);
+    let factors = [x, y, x.square(), x * y, y.square()];
     for (part, factor) in parts.iter_mut().skip(1).zip(factors) {
-        *part = b.mul(*part, factor);
+        *part *= factor;
     }
 }

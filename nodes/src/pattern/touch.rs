@@ -2,7 +2,7 @@
 //! and nothing needs to be summed.
 
 use super::measure::Measure;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Bool, Float, Sym2, Uint};
 
 /// How far a footprint reaches, in standard deviations: what lies beyond is 3e-7 of it.
 const REACH: f32 = 5.0;
@@ -12,51 +12,42 @@ const LEAST: f32 = 1e-5;
 
 /// What is known of a figure's measure before it is summed.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touch {
+pub(crate) struct Touch<'b> {
     /// Whether the edge may lie within reach.
-    touches: Value,
+    touches: Bool<'b>,
     /// Whether all within reach is inside; else all is outside.
-    inside: Value,
+    inside: Bool<'b>,
 }
 
-impl Touch {
+impl<'b> Touch<'b> {
     /// Of a figure whose edge lies between two distances from what is `square` (a squared distance)
     /// away from the mean, under a footprint of this covariance.
     pub(crate) fn between(
-        b: &mut Builder,
-        square: Value,
-        [inner, outer]: [Value; 2],
-        [xx, _, yy]: [Value; 3],
+        square: Float<'b>,
+        [inner, outer]: [Float<'b>; 2],
+        covariance: Sym2<'b>,
     ) -> Self {
-        let distance = b.sqrt(square);
+        let distance = square.sqrt();
         // √tr Σ is at least the larger standard deviation.
-        let trace = b.add(xx, yy);
-        let trace = b.offset(trace, LEAST * LEAST);
-        let sd = b.sqrt(trace);
-        let reach = b.scale(sd, REACH);
-        let (low, high) = (b.sub(inner, reach), b.add(outer, reach));
-        let inside = b.lt(distance, low);
-        let outside = b.lt(high, distance);
-        let settled = b.or(inside, outside);
+        let [xx, _, yy] = *covariance;
+        let reach = (xx + yy + LEAST * LEAST).sqrt() * REACH;
+        let inside = distance.lt(inner - reach);
+        let outside = distance.gt(outer + reach);
         Self {
-            touches: b.not(settled),
+            touches: !(inside | outside),
             inside,
         }
     }
 
     /// So many turns where the edge is within reach, else none.
-    pub(crate) fn turns(self, b: &mut Builder, count: u32) -> Value {
-        let (count, none) = (b.u32(count), b.u32(0));
-        b.select(self.touches, count, none)
+    pub(crate) fn turns(self, count: u32) -> Uint<'b> {
+        self.touches.select(count, 0u32)
     }
 
     /// The measure: what was summed, from zeros, or what is known.
-    pub(crate) fn measure(self, b: &mut Builder, summed: Measure) -> Measure {
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
-        let known = b.select(self.inside, one, zero);
-        let [value, ..] = summed;
+    pub(crate) fn measure(self, summed: Measure<'b>) -> Measure<'b> {
         let mut measure = summed;
-        measure[0] = b.select(self.touches, value, known);
+        measure[0] = self.touches.select(summed[0], self.inside.select(1.0, 0.0));
         measure
     }
 }

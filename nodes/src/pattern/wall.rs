@@ -7,12 +7,13 @@
 
 use super::bits;
 use super::bond::{Bond, Brick, Rows};
-use super::harmonics::{Factors, Spectrum, nearest, unknown};
+use super::harmonics::{Factors, Spectrum, unknown};
 use super::pulse::{Axis, Pulse, SHORT_RAMP, Series};
 use super::separable::{Cell, Place};
 use super::taps::{by_place, joined};
 use super::wanted::{Wanted, names};
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use super::waves::nearest;
+use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module};
 use std::f64::consts::{PI, TAU};
 
 /// How far a footprint reaches, in standard deviations: what lies beyond is 3e-5 of it.
@@ -31,42 +32,37 @@ impl Cell for Wall {
         format!("brick {:?}", self.bond)
     }
 
-    fn value(&self, b: &mut Builder, parameters: &[Value], at: [Value; 2]) -> Value {
-        let mut sum = b.f32(0.0);
-        for brick in self.bond.bricks() {
-            let centre = brick.place(b, parameters[0]);
-            let size = brick.size.map(|size| b.f32(size));
-            let pulses = self.pulses(b, centre, size, &parameters[1..]);
-            let [x, y] = [0, 1].map(|k| pulses[k].value(b, at[k]));
-            let part = b.mul(x, y);
-            sum = b.add(sum, part);
-        }
-        sum
+    fn value<'b>(&self, parameters: &[Float<'b>], at: [Float<'b>; 2]) -> Float<'b> {
+        let b = at[0].builder();
+        b.sum(self.bond.bricks().into_iter().map(|brick| {
+            let size = brick.size.map(|size| b.float(size));
+            let [x, y] = self.pulses(brick.place(parameters[0]), size, &parameters[1..]);
+            x.value(at[0]) * y.value(at[1])
+        }))
     }
 
-    fn averaged(
+    fn averaged<'b>(
         &self,
-        b: &mut Builder,
         module: &mut Module,
-        parameters: &[Value],
-        place: &Place,
+        parameters: &[Float<'b>],
+        place: &Place<'b>,
         of: Wanted,
-    ) -> Vec<Value> {
-        let bricks = self.bond.bricks();
-        let known: Vec<Option<f32>> = parameters.iter().map(|&v| b.as_constant(v)).collect();
+    ) -> Vec<Float<'b>> {
+        let b = place.correlation.builder();
+        let known: Vec<Option<f32>> = parameters.iter().map(|v| v.as_constant()).collect();
         let body = self.brick(module, &known, of);
-        let near: Vec<Value> = (bricks.iter())
-            .map(|brick| self.reached(b, brick, parameters[0], &place.axes))
+        let near: Vec<Bool<'b>> = (self.bond.bricks().iter())
+            .map(|brick| self.reached(brick, parameters[0], &place.axes))
             .collect();
         let [touched, count] = bits::set(b, &near);
-        let zero = b.f32(0.0);
-        let mut state = vec![touched];
-        state.resize(1 + of.orders + usize::from(of.squared), zero);
-        let [x, y] = place.axes;
-        let mut captures = vec![x.mean, y.mean, x.sd, y.sd, place.correlation];
-        captures.extend(unknown(parameters, &known));
-        let mut out = b.fold(&body, count, &state, &captures).split_off(1);
-        by_place(b, &mut out[..of.orders], place.axes.map(|axis| axis.sd));
+        let none = vec![b.float(0.0); of.orders + usize::from(of.squared)];
+        let (means, sds) = (
+            place.axes.map(|axis| axis.mean),
+            place.axes.map(|axis| axis.sd),
+        );
+        let captures = (means, sds, place.correlation, unknown(parameters, &known));
+        let (_, mut out) = b.fold(&body, count, (touched, none), captures);
+        by_place(&mut out[..of.orders], sds);
         out
     }
 
@@ -103,33 +99,23 @@ impl Factors for Wall {
         self.sizes().len()
     }
 
-    fn along(
+    fn along<'b>(
         &self,
-        b: &mut Builder,
         axis: usize,
-        frequency: Value,
-        parameters: &[Value],
-    ) -> Vec<[Value; 2]> {
+        frequency: Float<'b>,
+        parameters: &[Float<'b>],
+    ) -> Vec<[Float<'b>; 2]> {
         let cell = self.bond.cell()[axis];
         let [joint, ramp] = [1, 2].map(|i| parameters[2 * axis + i]);
         (self.sizes().into_iter())
             .map(|size| {
-                let size = b.f32(size[axis]);
-                let face = b.sub(size, joint);
-                let zero = b.f32(0.0);
-                let face = b.max(face, zero);
-                let outer = b.scale(face, 0.5);
-                let ramp = b.min(ramp, outer);
+                let face = (size[axis] - joint).max(0.0);
+                let ramp = ramp.min(face * 0.5);
                 // As of `wave`.
-                [(1.0, 1.0), (4.0 / 3.0, 0.816_496_6)].map(|(lost, share)| {
-                    let lost = b.scale(ramp, lost);
-                    let width = b.sub(face, lost);
-                    let width = b.scale(width, 1.0 / cell);
-                    let ramp = b.scale(ramp, share / cell);
-                    let (turns, ramped) = (b.mul(frequency, width), b.mul(frequency, ramp));
-                    let (face, edge) = (live_sinc(b, turns), live_sinc(b, ramped));
-                    let face = b.mul(width, face);
-                    b.mul(face, edge)
+                [(1.0, 1.0), (4.0 / 3.0, 0.816_496_6)].map(|(lost, share): (f32, f32)| {
+                    let width = (face - ramp * lost) * (1.0 / cell);
+                    let ramp = ramp * (share / cell);
+                    width * live_sinc(frequency * width) * live_sinc(frequency * ramp)
                 })
             })
             .collect()
@@ -193,30 +179,25 @@ impl Wall {
     }
 
     /// The pulses of a brick's face along both coordinates, in unit cells.
-    fn pulses(
+    fn pulses<'b>(
         &self,
-        b: &mut Builder,
-        centre: [Value; 2],
-        size: [Value; 2],
-        joints: &[Value],
-    ) -> [Pulse; 2] {
+        centre: [Float<'b>; 2],
+        size: [Float<'b>; 2],
+        joints: &[Float<'b>],
+    ) -> [Pulse<'b>; 2] {
         [0, 1].map(|k| {
             let (joint, ramp) = (joints[2 * k], joints[2 * k + 1]);
             let cell = self.bond.cell()[k];
-            let face = b.sub(size[k], joint);
-            let zero = b.f32(0.0);
-            let face = b.max(face, zero);
-            let outer = b.scale(face, 0.5);
-            let short = b.as_constant(ramp).is_some_and(|w| w / cell <= SHORT_RAMP);
+            let outer = (size[k] - joint).max(0.0) * 0.5;
+            let short = ramp.as_constant().is_some_and(|w| w / cell <= SHORT_RAMP);
             // No ramp stays one that is known, however small the face.
-            let ramp = if b.is_zero(ramp) {
+            let ramp = if ramp.is_zero() {
                 ramp
             } else {
-                b.min(ramp, outer)
+                ramp.min(outer)
             };
-            let lost = b.scale(ramp, 0.5);
-            let half = b.sub(outer, lost);
-            let [centre, half, bevel] = [centre[k], half, ramp].map(|v| b.scale(v, 1.0 / cell));
+            let half = outer - ramp * 0.5;
+            let [centre, half, bevel] = [centre[k], half, ramp].map(|v| v * (1.0 / cell));
             Pulse {
                 repeat: 1.0,
                 centre,
@@ -228,25 +209,17 @@ impl Wall {
     }
 
     /// Whether a brick, with its joints, is within reach.
-    fn reached(&self, b: &mut Builder, brick: &Brick, offset: Value, axes: &[Axis; 2]) -> Value {
-        let centre = brick.place(b, offset);
-        let mut near = b.bool(true);
+    fn reached<'b>(&self, brick: &Brick, offset: Float<'b>, axes: &[Axis<'b>; 2]) -> Bool<'b> {
+        let centre = brick.place(offset);
+        let mut near = offset.builder().literal(true);
         for k in [0, 1] {
             let cell = self.bond.cell()[k];
             let half = 0.5 * brick.size[k] / cell;
             if half >= 0.5 {
                 continue;
             }
-            let centre = b.scale(centre[k], 1.0 / cell);
-            let from = b.sub(axes[k].mean, centre);
-            let rounded = b.offset(from, 0.5);
-            let rounded = b.floor(rounded);
-            let from = b.sub(from, rounded);
-            let distance = b.abs(from);
-            let reach = b.scale(axes[k].sd, REACH);
-            let reach = b.offset(reach, half);
-            let along = b.lt(distance, reach);
-            near = b.and(near, along);
+            let distance = nearest(axes[k].mean - centre[k] * (1.0 / cell)).abs();
+            near = near & distance.lt(axes[k].sd * REACH + half);
         }
         near
     }
@@ -254,54 +227,51 @@ impl Wall {
     /// One more brick of those whose bits are set, the body of a fold.
     fn brick(&self, module: &mut Module, known: &[Option<f32>], of: Wanted) -> FunctionRef {
         let rows = Rows::of(module, self.bond);
-        let doc = "One more brick within reach.";
-        let mut builder = Builder::new("brick_face", doc);
-        let b = &mut builder;
-        b.param("index", Type::U32);
-        let touched = b.param("touched", Type::U32);
+        let b = &Builder::new("brick_face", "One more brick within reach.");
+        b.uint_param("index");
+        let touched = b.uint_param("touched");
         let names = names(of);
-        let sums: Vec<Value> = names.iter().map(|name| b.param_f32(*name)).collect();
-        let [x, y, sd_x, sd_y, correlation] =
-            ["x", "y", "sd_x", "sd_y", "correlation"].map(|name| b.param_f32(name));
+        let sums: Vec<Float<'_>> = names.iter().map(|name| b.float_param(*name)).collect();
+        let means = ["x", "y"].map(|name| b.float_param(name));
+        let sds = ["sd_x", "sd_y"].map(|name| b.float_param(name));
+        let correlation = b.float_param("correlation");
         let names_of = ["offset", "joint_x", "ramp_x", "joint_y", "ramp_y"];
-        let parameters: Vec<Value> = (names_of.iter().zip(known))
+        let parameters: Vec<Float<'_>> = (names_of.iter().zip(known))
             .map(|(name, known)| match known {
-                Some(v) => b.f32(*v),
-                None => b.param_f32(*name),
+                Some(v) => b.float(*v),
+                None => b.float_param(*name),
             })
             .collect();
-        let [which, left] = bits::lowest(b, touched);
-        let (centre, size) = rows.brick(b, which, parameters[0]);
-        let pulses = self.pulses(b, centre, size, &parameters[1..]);
-        let axes = [(x, sd_x), (y, sd_y)].map(|(mean, sd)| Axis { mean, sd });
+        let [which, left] = bits::lowest(touched);
+        let (centre, size) = rows.brick(which, parameters[0]);
+        let pulses = self.pulses(centre, size, &parameters[1..]);
         let mut series = Series::default();
-        let [x, y] =
-            [0, 1].map(|k| pulses[k].moments(b, (&mut *module, &mut series), axes[k], of.squared));
-        let mut parts = joined(b, x.own, y.own, correlation)[..of.orders].to_vec();
+        let [x, y] = [0, 1].map(|k| {
+            let axis = Axis {
+                mean: means[k],
+                sd: sds[k],
+            };
+            pulses[k].moments((&mut *module, &mut series), axis, of.squared)
+        });
+        let mut parts = joined(x.own, y.own, correlation)[..of.orders].to_vec();
         if let (Some(x), Some(y)) = (x.square, y.square) {
-            parts.push(joined(b, x, y, correlation)[0]);
+            parts.push(joined(x, y, correlation)[0]);
         }
         b.result("touched", left);
         for ((name, sum), part) in names.iter().zip(sums).zip(parts) {
-            let sum = b.add(sum, part);
-            b.result(*name, sum);
+            b.result(*name, sum + part);
         }
-        builder.finish(module)
+        b.finish(module)
     }
 }
 
 /// sin πx/(πx) where the shader runs.
-fn live_sinc(b: &mut Builder, x: Value) -> Value {
+fn live_sinc(x: Float<'_>) -> Float<'_> {
     // In turns, less whole ones.
-    let turns = b.scale(x, 0.5);
-    let turns = nearest(b, turns);
-    let [_, sine] = b.circle(turns);
-    let angle = b.scale(x, std::f32::consts::PI);
-    let (magnitude, least, one) = (b.abs(angle), b.f32(1e-4), b.f32(1.0));
-    let still = b.lt(magnitude, least);
-    let angle = b.select(still, one, angle);
-    let ratio = b.div(sine, angle);
-    b.select(still, one, ratio)
+    let [_, sine] = nearest(x * 0.5).circle();
+    let angle = x * std::f32::consts::PI;
+    let still = angle.abs().lt(1e-4);
+    still.select(1.0, sine / still.select(1.0, angle))
 }
 
 /// sin πx/(πx).

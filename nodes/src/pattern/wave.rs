@@ -1,14 +1,14 @@
 //! Parallel waves.
 
 use crate::componentwise::{product, sum, transfer};
-use crate::coordinate::rotate2d::turn;
 use crate::noise::field::Spread;
 use crate::pattern::grid::TEXCOORD;
+use crate::pattern::stripes::along;
+use crate::pattern::unless::pattern_unless;
 use mipless_codegen::moments::{LinearWave, Signal, Sine, SquareWave};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
 static SPEC: NodeSpec = NodeSpec {
@@ -64,7 +64,7 @@ static SPEC: NodeSpec = NodeSpec {
         .unit("cycles"),
     ],
     output: OutputType::Exactly(Type::Float),
-    class,
+    class: |inputs| pattern_unless(inputs, &["frequency", "rotate", "phase"]),
     example: r#"{
   "version": 1,
   "name": "wave_example",
@@ -79,48 +79,25 @@ static SPEC: NodeSpec = NodeSpec {
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-/// A function of position alone, unless a parameter varies.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if ["frequency", "rotate", "phase"]
-        .into_iter()
-        .any(|port| inputs.varies(port))
-    {
-        Behaviour::Function
-    } else {
-        Behaviour::Pattern
-    }
-}
-
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let texcoord = lower.bundle(node, "texcoord");
     let [frequency, rotate, phase] =
         ["frequency", "rotate", "phase"].map(|port| lower.signal(node, port));
-    let [cosine, sine] = turn(lower, &rotate);
-    let (along, across) = (
-        product(lower, &texcoord[0], &cosine),
-        product(lower, &texcoord[1], &sine),
-    );
-    let distance = sum(lower, &along, &across);
-    let place = product(lower, &distance, &frequency);
-    let place = sum(lower, &place, &phase);
+    let distance = along(lower, &texcoord, &rotate);
+    let place = sum(&product(lower, &distance, &frequency), &phase);
+    let shape = lower.choice(node, "shape");
     // A sine has one wavelength; of a triangle √(E|∇|²/Var) is 2√12/2π times as much.
-    let finer = match lower.choice(node, "shape") {
+    let finer = match shape {
         "triangle" => 1.102_66,
         _ => 1.0,
     };
-    let b = lower.b();
-    let spread = Spread::of(b, &texcoord);
-    let size = b.sqrt(spread.eigenvalues[0]);
-    let waves = frequency.flat_mean(b);
-    let waves = b.abs(waves);
-    let detail = b.mul(size, waves);
-    let detail = b.scale(detail, finer);
-    lower.pattern_detail(detail);
-    let wave = match lower.choice(node, "shape") {
+    let size = Spread::of(&texcoord).eigenvalues[0].sqrt();
+    lower.pattern_detail(size * frequency.flat_mean().abs() * finer);
+    let wave = match shape {
         "triangle" => transfer(lower, &place, &LinearWave::triangle()),
         "saw" => transfer(lower, &place, &LinearWave::sawtooth()),
         "square" => {
-            let width = lower.b().f32(0.5);
+            let width = lower.b().float(0.5);
             transfer(lower, &place, &SquareWave { width })
         }
         _ => sine_of(lower, &place),
@@ -129,22 +106,14 @@ fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
 }
 
 /// ½ − ½ cos 2πp; whole turns are left out before they lose the fraction's digits.
-fn sine_of(lower: &mut Lower<'_>, place: &Signal) -> Signal {
-    let b = lower.b();
+fn sine_of<'b>(lower: &mut Lower<'_, 'b>, place: &Signal<'b>) -> Signal<'b> {
     let fraction = Signal {
         cell: None,
         ..place.clone()
     };
-    let turn = b.f32(std::f32::consts::TAU);
-    let angle = fraction.scale(b, turn);
-    let wave = transfer(
-        lower,
-        &angle,
-        &Sine {
-            phase: -std::f32::consts::FRAC_PI_2,
-        },
-    );
-    let b = lower.b();
-    let half = b.f32(0.5);
-    wave.scale(b, half).offset(b, half).with_range([0.0, 1.0])
+    let sine = Sine {
+        phase: -std::f32::consts::FRAC_PI_2,
+    };
+    let wave = transfer(lower, &(fraction * std::f32::consts::TAU), &sine);
+    (wave * 0.5).offset(0.5).with_range([0.0, 1.0])
 }

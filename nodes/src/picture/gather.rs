@@ -1,27 +1,128 @@
 //! The moments of a field over the parts of a footprint, and the signals that they make.
 
-use super::footprint::{CAPTURES, Footprint, Part, part};
-use super::pyramid::triangle;
-use super::read::Tap;
+use super::footprint::{CAPTURES, Footprint, Part, Parts, part};
+use super::pyramid::{pairs, triangle};
+use super::read::{Pyramid, Tap};
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Type, Value};
-use mipless_codegen::moments::Signal;
+use mipless_codegen::ir::{Builder, Float, Scalar, Scalars, Type, Vec2};
+use mipless_codegen::moments::{Mode, Signal};
+
+/// A field that is made of a picture, at a place.
+pub(crate) struct Reading<'a, 'b> {
+    pyramid: &'a Pyramid,
+    /// In pictures.
+    position: &'a [Signal<'b>],
+    /// `None` at a point.
+    footprint: Option<Footprint<'b>>,
+    /// What each part needs to know where it is.
+    place: Vec<Scalar<'b>>,
+}
+
+impl<'a, 'b> Reading<'a, 'b> {
+    pub(crate) fn new(
+        lower: &Lower<'_, 'b>,
+        pyramid: &'a Pyramid,
+        position: &'a [Signal<'b>],
+        parts: Parts,
+        place: impl Scalars<'b>,
+    ) -> Self {
+        let texels = pyramid.texels();
+        let of = || Footprint::of(position, texels, lower.filter(), parts);
+        Self {
+            pyramid,
+            position,
+            footprint: lower.mode().filters().then(of),
+            place: place.scalars(),
+        }
+    }
+
+    /// The standard deviation along the longer axis of the footprint, in texels; `None` at a point.
+    pub(crate) fn longest(&self) -> Option<Float<'b>> {
+        let [longer, _] = self.footprint?.covariance.eigenvalues();
+        Some(longer.max(0.0).sqrt())
+    }
+
+    /// The channels of the field: `at` gives it for a part of the footprint by the part, what the
+    /// part needs and the picture under it. The key names whatever `at` depends on.
+    pub(crate) fn signals<F>(&self, lower: &mut Lower<'_, 'b>, key: &str, at: F) -> Vec<Signal<'b>>
+    where
+        F: for<'c> FnOnce(&Part<'c>, &[Scalar<'c>], &dyn Fn([Float<'c>; 2]) -> Tap<'c>) -> Tap<'c>,
+    {
+        let (b, mode, channels) = (lower.b(), lower.mode(), self.pyramid.layout.channels);
+        let certain =
+            |means: &[Float<'b>]| means.iter().map(|&mean| Signal::certain(mean)).collect();
+        let Some(footprint) = &self.footprint else {
+            let point = self.pyramid.point(lower);
+            let zero = b.float(0.0);
+            let whole = Part {
+                offset: Vec2::splat(zero),
+                weight: b.float(1.0),
+                variance: zero,
+            };
+            let read = |place: [Float<'b>; 2]| Tap::of(&b.call(&point, place), channels);
+            return certain(&at(&whole, &self.place, &read).mean);
+        };
+        let carries = matches!(mode, Mode::Local | Mode::Quad);
+        let filtered = self.pyramid.filtered(lower, carries);
+        let place = (footprint, &self.place[..]);
+        let gathered = gather(lower, key, (channels, carries), place, |b, part, place| {
+            at(part, place, &|[x, y]| {
+                Tap::of(&b.call(&filtered, [x, y, part.variance]), channels)
+            })
+        });
+        if carries {
+            return self.carried(lower, footprint, &gathered);
+        }
+        let mut signals: Vec<Signal<'b>> = certain(&gathered.mean);
+        if mode == Mode::Ensemble {
+            let [xx, _, yy] = *footprint.covariance;
+            let removed = self.pyramid.removed(lower, (xx + yy) * 0.5);
+            lower.algebra.attach_joint(&mut signals, &removed);
+        }
+        signals
+    }
+
+    /// The signals: responses by the gradients, and what is left of the covariance as parts that the
+    /// channels share.
+    fn carried(
+        &self,
+        lower: &mut Lower<'_, 'b>,
+        footprint: &Footprint<'b>,
+        field: &Gathered<'b>,
+    ) -> Vec<Signal<'b>> {
+        let [x, y] = self.position else {
+            panic!("a position has two coordinates")
+        };
+        let [x, y] = [x, y].map(|axis| Signal {
+            cell: None,
+            ..axis.clone()
+        });
+        let [w, h] = self.pyramid.texels();
+        let rest: Vec<Float<'b>> = (pairs(field.mean.len()).zip(&field.covariance))
+            .map(|((i, k), &all)| {
+                let response = footprint.covariance.times(field.gradient[k]);
+                all - field.gradient[i].dot(response)
+            })
+            .collect();
+        let mut signals: Vec<Signal<'b>> = (field.mean.iter().zip(&field.gradient))
+            .map(|(&mean, &Vec2([dx, dy]))| Signal {
+                mean,
+                range: [f32::NEG_INFINITY, f32::INFINITY],
+                ..&x * (dx * w) + &y * (dy * h)
+            })
+            .collect();
+        lower.algebra.attach_joint(&mut signals, &rest);
+        signals
+    }
+}
 
 /// A field over a footprint: mean and gradient (a texel) by channel, and the lower triangle of the
 /// covariance; without moments, the means alone.
 #[derive(Clone, Debug)]
-pub(crate) struct Gathered {
-    pub(crate) mean: Vec<Value>,
-    pub(crate) gradient: Vec<[Value; 2]>,
-    pub(crate) covariance: Vec<Value>,
-}
-
-/// Where a field is read: the footprint, the pixel's axes in pictures if it has nodes, and whatever
-/// else each part needs.
-pub(crate) struct Place<'a> {
-    pub(crate) footprint: &'a Footprint,
-    pub(crate) pixel: Option<[[Value; 2]; 2]>,
-    pub(crate) more: Vec<Value>,
+struct Gathered<'b> {
+    mean: Vec<Float<'b>>,
+    gradient: Vec<Vec2<'b>>,
+    covariance: Vec<Float<'b>>,
 }
 
 /// Gathers the field that `at` gives for a part, over all parts: means and covariances by West's
@@ -29,139 +130,70 @@ pub(crate) struct Place<'a> {
 ///
 /// The covariance of a part is that of its gradient and what is beyond it; between the parts it is
 /// that of their means (Grenier et al. 2022, eq. 14, 15, 18 and 19).
-pub(crate) fn gather(
-    lower: &mut Lower<'_>,
+fn gather<'b>(
+    lower: &mut Lower<'_, 'b>,
     key: &str,
     (channels, carries): (usize, bool),
-    place: &Place<'_>,
-    at: impl FnOnce(&mut Builder, &Part, &[Value]) -> Tap,
-) -> Gathered {
+    (footprint, place): (&Footprint<'b>, &[Scalar<'b>]),
+    at: impl for<'c> FnOnce(&'c Builder, &Part<'c>, &[Scalar<'c>]) -> Tap<'c>,
+) -> Gathered<'b> {
     let numbers = if carries {
         3 * channels + triangle(channels)
     } else {
         channels
     };
-    let types: Vec<Type> = place.more.iter().map(|&v| lower.b().ty(v)).collect();
-    let has_nodes = place.pixel.is_some();
+    let types: Vec<Type> = place.iter().map(|v| v.ty()).collect();
+    let has_nodes = footprint.pixel.is_some();
     let body = lower.function(&format!("{key} gather {carries}"), |module| {
-        let mut b = Builder::new("part_of_footprint", "One more part of the footprint.");
-        let index = b.param("index", Type::U32);
-        let before = b.param_f32("weight_so_far");
-        let state: Vec<Value> = (0..numbers)
-            .map(|i| b.param_f32(format!("state_{i}")))
+        let b = &Builder::new("part_of_footprint", "One more part of the footprint.");
+        let index = b.uint_param("index");
+        let before = b.float_param("weight_so_far");
+        let state: Vec<Float<'_>> = (0..numbers)
+            .map(|i| b.float_param(format!("state_{i}")))
             .collect();
-        let captures = CAPTURES.map(|name| b.param_f32(name));
+        let captures = CAPTURES.map(|name| b.float_param(name));
         let pixel = has_nodes.then(|| {
-            ["a", "b"].map(|side| ["x", "y"].map(|axis| b.param_f32(format!("pixel_{side}{axis}"))))
+            ["a", "b"].map(|side| {
+                Vec2(["x", "y"].map(|axis| b.float_param(format!("pixel_{side}{axis}"))))
+            })
         });
-        let more: Vec<Value> = (types.iter().enumerate())
-            .map(|(i, &ty)| b.param(format!("place_{i}"), ty))
+        let place: Vec<Scalar<'_>> = (types.iter().enumerate())
+            .map(|(i, &ty)| b.scalar_param(format!("place_{i}"), ty))
             .collect();
-        let part = part(&mut b, index, &captures, pixel);
-        let tap = at(&mut b, &part, &more);
+        let part = part(index, captures, pixel);
+        let Tap {
+            mean,
+            gradient,
+            rest,
+        } = at(b, &part, &place);
+
         let weight = part.weight;
-        let after = b.add(before, weight);
-        let tiny = b.f32(1e-30);
-        let divisor = b.max(after, tiny);
-        let share = b.div(weight, divisor);
-        b.result("weight_so_far", after);
-        let deviation: Vec<Value> = (tap.mean.iter().zip(&state))
-            .map(|(&mean, &so_far)| b.sub(mean, so_far))
+        let after = before + weight;
+        let share = weight / after.max(1e-30);
+        let deviation: Vec<Float<'_>> = (mean.iter().zip(&state))
+            .map(|(&mean, &so_far)| mean - so_far)
             .collect();
-        let mut results = Vec::new();
-        for (&deviation, &so_far) in deviation.iter().zip(&state) {
-            let step = b.mul(share, deviation);
-            results.push(b.add(so_far, step));
+        let mut steps: Vec<Float<'_>> = deviation.iter().map(|&x| share * x).collect();
+        steps.extend(gradient.iter().copied().flatten().map(|x| weight * x));
+        for ((i, k), rest) in pairs(gradient.len()).zip(rest) {
+            let inside = gradient[i].dot(gradient[k]) * part.variance + rest;
+            let between = deviation[i] * deviation[k] * (1.0 - share);
+            steps.push(weight * (inside + between));
         }
-        for &slope in tap.gradient.iter().flatten() {
-            let step = b.mul(weight, slope);
-            results.push(b.add(state[results.len()], step));
-        }
-        let one = b.f32(1.0);
-        let rest = b.sub(one, share);
-        for i in 0..if carries { channels } else { 0 } {
-            for k in 0..=i {
-                let entry = results.len() - 3 * channels;
-                let linear = b.dot(&tap.gradient[i], &tap.gradient[k]);
-                let linear = b.mul(linear, part.variance);
-                let inside = b.add(linear, tap.rest[entry]);
-                let between = b.mul(deviation[i], deviation[k]);
-                let between = b.mul(between, rest);
-                let all = b.add(inside, between);
-                let step = b.mul(weight, all);
-                results.push(b.add(state[results.len()], step));
-            }
-        }
-        for (i, result) in results.into_iter().enumerate() {
-            b.result(format!("state_{i}"), result);
+        b.result("weight_so_far", after);
+        for (i, (so_far, step)) in state.into_iter().zip(steps).enumerate() {
+            b.result(format!("state_{i}"), so_far + step);
         }
         b.finish(module)
     });
     let b = lower.b();
-    let zero = b.f32(0.0);
-    let mut captures = place.footprint.captures.clone();
-    captures.extend(place.pixel.iter().flatten().flatten());
-    captures.extend(&place.more);
-    let state = b.fold(
-        &body,
-        place.footprint.count,
-        &vec![zero; 1 + numbers],
-        &captures,
-    );
+    let start = vec![b.float(0.0); 1 + numbers];
+    let captures = (footprint.captures, footprint.pixel, place);
+    let state = b.fold(&body, footprint.count, start, captures);
     let tap = Tap::of(&state[1..], channels);
     Gathered {
         mean: tap.mean,
         gradient: tap.gradient,
         covariance: tap.rest,
-    }
-}
-
-impl Gathered {
-    /// The signals at a position in pictures of so many texels: responses by the gradients, and
-    /// what is left of the covariance as parts that the channels share.
-    pub(crate) fn signals(
-        &self,
-        lower: &mut Lower<'_>,
-        position: &[Signal],
-        texels: [f32; 2],
-        footprint: &Footprint,
-    ) -> Vec<Signal> {
-        let [x, y] = position else {
-            panic!("a position has two coordinates")
-        };
-        let (x, y) = (
-            Signal {
-                cell: None,
-                ..x.clone()
-            },
-            Signal {
-                cell: None,
-                ..y.clone()
-            },
-        );
-        let b = lower.b();
-        let mut rest = Vec::new();
-        let [xx, xy, yy] = footprint.covariance;
-        for i in 0..self.mean.len() {
-            for k in 0..=i {
-                let ([p, q], [r, s]) = (self.gradient[i], self.gradient[k]);
-                let along = b.dot(&[xx, xy], &[r, s]);
-                let across = b.dot(&[xy, yy], &[r, s]);
-                let linear = b.dot(&[p, q], &[along, across]);
-                rest.push(b.sub(self.covariance[rest.len()], linear));
-            }
-        }
-        let mut signals: Vec<Signal> = (self.mean.iter().zip(&self.gradient))
-            .map(|(&mean, &[dx, dy])| {
-                let (dx, dy) = (b.scale(dx, texels[0]), b.scale(dy, texels[1]));
-                let (of_x, of_y) = (x.scale(b, dx), y.scale(b, dy));
-                let mut signal = of_x.add(b, &of_y);
-                signal.mean = mean;
-                signal.range = [f32::NEG_INFINITY, f32::INFINITY];
-                signal
-            })
-            .collect();
-        lower.algebra.attach_joint(&mut signals, &rest);
-        signals
     }
 }

@@ -44,6 +44,16 @@ impl Planes {
             planes: (0..count).map(plane).collect(),
         }
     }
+
+    /// The least and the largest number of each plane.
+    pub(crate) fn ranges(&self) -> Vec<[f32; 2]> {
+        let range = |plane: &Vec<f64>| {
+            let bounds = [f64::INFINITY, f64::NEG_INFINITY];
+            let fold = |[low, high]: [f64; 2], &x: &f64| [low.min(x), high.max(x)];
+            plane.iter().fold(bounds, fold).map(|x| x as f32)
+        };
+        self.planes.iter().map(range).collect()
+    }
 }
 
 #[cfg(test)]

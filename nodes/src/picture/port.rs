@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::planes::Planes;
 use super::pyramid::Address;
-use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Float, Int};
 use mipless_codegen::moments::Signal;
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Default, Node, Picture, PortSpec, PortType, Range, Type};
 
 /// Which picture.
@@ -67,7 +67,7 @@ pub(crate) fn linearises(colorspace: &str, picture: &Picture, color: bool) -> bo
 
 /// The planes of a picture as a node of this type sees them, and a key that tells them apart.
 pub(crate) fn planes(
-    lower: &Lower<'_>,
+    lower: &Lower<'_, '_>,
     node: &Node,
     picture: &Picture,
     ty: Type,
@@ -81,73 +81,45 @@ pub(crate) fn planes(
 }
 
 /// texcoord · uvtiling − uvoffset, in pictures.
-pub(crate) fn position(lower: &mut Lower<'_>, node: &Node) -> Vec<Signal> {
-    let tiling = lower.bundle(node, "uvtiling");
-    let offset = lower.bundle(node, "uvoffset");
-    let texcoord = lower.bundle(node, "texcoord");
+pub(crate) fn position<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let [tiling, offset, texcoord] =
+        ["uvtiling", "uvoffset", "texcoord"].map(|port| lower.bundle(node, port));
     (texcoord.iter().zip(tiling.iter().zip(&offset)))
-        .map(|(axis, (tiling, offset))| {
-            let tiled = lower.algebra.product(axis, tiling);
-            tiled.sub(lower.b(), offset)
-        })
+        .map(|(axis, (tiling, offset))| lower.algebra.product(axis, tiling) - offset)
         .collect()
 }
 
 /// The whole part of a coordinate and the rest, from 0 to 1.
-pub(crate) fn split(b: &mut Builder, axis: &Signal) -> (Value, Value) {
-    let whole = b.floor(axis.mean);
-    let rest = b.sub(axis.mean, whole);
-    let whole = b.trunc_i(whole);
-    match axis.cell {
-        None => (whole, rest),
-        Some(cell) => (b.add_i(cell, whole), rest),
-    }
+pub(crate) fn split<'b>(axis: &Signal<'b>) -> (Int<'b>, Float<'b>) {
+    let floor = axis.mean.floor();
+    let whole = floor.to_int();
+    let cell = axis.cell.map_or(whole, |cell| cell + whole);
+    (cell, axis.mean - floor)
 }
 
 impl Address {
     /// A coordinate, near enough to 0 to keep its detail, that reads the same texel.
-    pub(crate) fn reduced(self, b: &mut Builder, axis: &Signal) -> Value {
-        let (cell, rest) = split(b, axis);
+    pub(crate) fn reduced<'b>(self, axis: &Signal<'b>) -> Float<'b> {
+        let (cell, rest) = split(axis);
         match self {
             Self::Periodic => rest,
-            Self::Mirror => {
-                let one = b.i32(1);
-                let odd = b.and_i(cell, one);
-                let odd = b.float_i(odd);
-                b.add(rest, odd)
-            }
-            Self::Clamp => {
-                // Beyond this many pictures all is the edge's.
-                let (least, most) = (b.i32(-64), b.i32(64));
-                let cell = b.max_i(cell, least);
-                let cell = b.min_i(cell, most);
-                let cell = b.float_i(cell);
-                b.add(rest, cell)
-            }
+            Self::Mirror => rest + (cell & 1).to_float(),
+            // Beyond this many pictures all is the edge's.
+            Self::Clamp => rest + cell.max(-64).min(64).to_float(),
         }
     }
 
     /// The place in the picture that a reduced coordinate with an offset reads, and the sign of its
     /// change.
-    pub(crate) fn place(self, b: &mut Builder, x: Value) -> (Value, Value) {
-        let one = b.f32(1.0);
+    pub(crate) fn place(self, x: Float<'_>) -> (Float<'_>, Float<'_>) {
         match self {
-            Self::Periodic => {
-                let whole = b.floor(x);
-                (b.sub(x, whole), one)
-            }
-            Self::Clamp => (x, one),
+            Self::Periodic => (x - x.floor(), x.literal(1.0)),
+            Self::Clamp => (x, x.literal(1.0)),
             Self::Mirror => {
-                let half = b.scale(x, 0.5);
-                let whole = b.floor(half);
-                let rest = b.sub(half, whole);
-                let twice = b.scale(rest, 2.0);
-                let two = b.f32(2.0);
-                let back = b.sub(two, twice);
-                let turned = b.lt(one, twice);
-                let minus = b.f32(-1.0);
-                let sign = b.select(turned, minus, one);
-                (b.min(twice, back), sign)
+                let half = x * 0.5;
+                let there = (half - half.floor()) * 2.0;
+                let back = 2.0 - there;
+                (there.min(back), there.gt(1.0).select(-1.0, 1.0))
             }
         }
     }

@@ -76,6 +76,11 @@ pub(crate) const fn triangle(n: usize) -> usize {
     n * (n + 1) / 2
 }
 
+/// The channels of each entry, in order.
+pub(crate) fn pairs(n: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..n).flat_map(|i| (0..=i).map(move |k| (i, k)))
+}
+
 impl Layout {
     /// Of a picture of this size: to the level that is wider than the picture, or the texels alone.
     pub(crate) fn new(
@@ -140,8 +145,15 @@ struct Moments {
 /// The variance that a Gaussian has beyond the box of a cell between four texels.
 const FIRST: f64 = 1.0 - 1.0 / 12.0;
 
-/// All numbers of the table, the mean covariance of each level (one row a level, zeros for level 0).
-pub(crate) fn bake(layout: &Layout, picture: &Planes) -> (Vec<f32>, Vec<Vec<f64>>) {
+/// What a pyramid is made of.
+pub(crate) struct Baked {
+    /// All numbers of the table.
+    pub(crate) numbers: Vec<f32>,
+    /// The mean covariance of each level: one row a level, zeros for level 0.
+    pub(crate) removed: Vec<Vec<f64>>,
+}
+
+pub(crate) fn bake(layout: &Layout, picture: &Planes) -> Baked {
     let n = layout.channels;
     let centre: Vec<f64> = (picture.planes.iter())
         .map(|plane| plane.iter().sum::<f64>() / plane.len() as f64)
@@ -164,7 +176,7 @@ pub(crate) fn bake(layout: &Layout, picture: &Planes) -> (Vec<f32>, Vec<Vec<f64>
         removed.push(moments.covariances.iter().map(inside).collect());
         previous = Some(moments);
     }
-    (numbers, removed)
+    Baked { numbers, removed }
 }
 
 /// The samples with margins, about the centre.
@@ -205,16 +217,12 @@ fn first(layout: &Layout, texels: &[Plane]) -> Moments {
     let [width, height] = from.padded;
     let n = texels.len();
     // The cell right of and below each sample; margins end in cells of no width.
-    let corner = |x: usize, y: usize, dx: usize, dy: usize| {
-        let (x, y) = (x + dx, y + dy);
-        let fold = |i: usize, axis: usize| {
-            let margin = layout.address[axis].margin();
-            let texel =
-                layout.address[axis].texel(i as i64 - margin as i64, from.size[axis] as i64);
-            texel + margin
-        };
-        fold(y, 1) * width + fold(x, 0)
+    let fold = |i: usize, axis: usize| {
+        let address = layout.address[axis];
+        let margin = address.margin();
+        address.texel(i as i64 - margin as i64, from.size[axis] as i64) + margin
     };
+    let corner = |x: usize, y: usize| fold(y, 1) * width + fold(x, 0);
     let mut cells = Moments {
         means: vec![vec![0.0; width * height]; n],
         covariances: vec![vec![0.0; width * height]; triangle(n)],
@@ -222,12 +230,8 @@ fn first(layout: &Layout, texels: &[Plane]) -> Moments {
     for y in 0..height {
         for x in 0..width {
             let at = y * width + x;
-            let corners = [
-                corner(x, y, 0, 0),
-                corner(x, y, 1, 0),
-                corner(x, y, 0, 1),
-                corner(x, y, 1, 1),
-            ];
+            let corners =
+                [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| corner(x, y));
             // f = a + b s + c t + d s t with s, t from −½ to ½: variance b²/12 + c²/12 + d²/144.
             let parts: Vec<[f64; 4]> = (texels.iter())
                 .map(|plane| {
@@ -240,15 +244,12 @@ fn first(layout: &Layout, texels: &[Plane]) -> Moments {
                     ]
                 })
                 .collect();
-            let mut entry = 0;
-            for i in 0..n {
-                cells.means[i][at] = parts[i][0];
-                for k in 0..=i {
-                    let product = |part: usize| parts[i][part] * parts[k][part];
-                    cells.covariances[entry][at] =
-                        (product(1) + product(2)) / 12.0 + product(3) / 144.0;
-                    entry += 1;
-                }
+            for (plane, part) in cells.means.iter_mut().zip(&parts) {
+                plane[at] = part[0];
+            }
+            for ((i, k), plane) in pairs(n).zip(&mut cells.covariances) {
+                let product = |part: usize| parts[i][part] * parts[k][part];
+                plane[at] = (product(1) + product(2)) / 12.0 + product(3) / 144.0;
             }
         }
     }
@@ -334,10 +335,9 @@ impl Axis {
 /// Means filtered, and covariances as what is inside and what is between.
 fn filtered(axes: &[Axis; 2], finer: &Moments) -> Moments {
     let means: Vec<Plane> = finer.means.iter().map(|m| separable(axes, m)).collect();
-    let mut covariances = Vec::new();
-    for i in 0..finer.means.len() {
-        for k in 0..=i {
-            let inside = &finer.covariances[covariances.len()];
+    let covariances = pairs(means.len())
+        .zip(&finer.covariances)
+        .map(|((i, k), inside)| {
             let products: Plane = (inside.iter().zip(&finer.means[i]).zip(&finer.means[k]))
                 .map(|((c, x), y)| c + x * y)
                 .collect();
@@ -348,10 +348,12 @@ fn filtered(axes: &[Axis; 2], finer: &Moments) -> Moments {
                     *c = c.max(0.0);
                 }
             }
-            covariances.push(plane);
-        }
+            plane
+        });
+    Moments {
+        covariances: covariances.collect(),
+        means,
     }
-    Moments { means, covariances }
 }
 
 fn separable([horizontal, vertical]: &[Axis; 2], plane: &Plane) -> Plane {

@@ -1,14 +1,17 @@
 //! Reading a pyramid of moments at a place, for a Gaussian of any width.
 
-use super::pyramid::{Layout, triangle};
+use super::pyramid::{Baked, Layout, pairs, triangle};
+use super::texels::lerp;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Numbers, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Numbers, Uint, Vec2, dot};
+use std::fmt;
+use std::sync::{Arc, LazyLock};
 
 /// Numbers of a row of the table that says where the levels are.
 const ROW: u32 = 4;
 
 /// The table of a pyramid, and where its levels are.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(crate) struct Pyramid {
     pub(crate) layout: Layout,
     /// The numbers of all levels.
@@ -16,36 +19,45 @@ pub(crate) struct Pyramid {
     /// A row a level: samples in x and y, and the offset as two numbers.
     rows: u32,
     key: String,
+    baked: Arc<LazyLock<Baked, Box<dyn FnOnce() -> Baked + Send + Sync>>>,
+}
+
+impl fmt::Debug for Pyramid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.key)
+    }
 }
 
 /// The field at a place, by channel: what one function of the module gives.
 #[derive(Clone, Debug)]
-pub(crate) struct Tap {
-    pub(crate) mean: Vec<Value>,
+pub(crate) struct Tap<'b> {
+    pub(crate) mean: Vec<Float<'b>>,
     /// The change a texel along x and y.
-    pub(crate) gradient: Vec<[Value; 2]>,
+    pub(crate) gradient: Vec<Vec2<'b>>,
     /// The lower triangle of the covariance beyond the gradient's.
-    pub(crate) rest: Vec<Value>,
+    pub(crate) rest: Vec<Float<'b>>,
 }
 
-impl Tap {
+impl<'b> Tap<'b> {
     /// From numbers: the means, and if there are more the gradients and the rest.
-    pub(crate) fn of(numbers: &[Value], channels: usize) -> Self {
+    pub(crate) fn of(numbers: &[Float<'b>], channels: usize) -> Self {
         let (mean, more) = numbers.split_at(channels);
         let (gradient, rest) = more.split_at(if more.is_empty() { 0 } else { 2 * channels });
         Self {
             mean: mean.to_vec(),
-            gradient: gradient.chunks(2).map(|pair| [pair[0], pair[1]]).collect(),
+            gradient: (gradient.as_chunks().0.iter())
+                .map(|&slopes| Vec2(slopes))
+                .collect(),
             rest: rest.to_vec(),
         }
     }
 
     /// The results of a function.
-    fn results(&self, b: &mut Builder) {
+    fn results(&self, b: &'b Builder) {
         for (i, &mean) in self.mean.iter().enumerate() {
             b.result(format!("mean_{i}"), mean);
         }
-        for (i, &[x, y]) in self.gradient.iter().enumerate() {
+        for (i, &Vec2([x, y])) in self.gradient.iter().enumerate() {
             b.result(format!("dx_{i}"), x);
             b.result(format!("dy_{i}"), y);
         }
@@ -59,21 +71,19 @@ impl Tap {
 const WIDENED: f32 = 7.0 / 6.0;
 
 /// σ² of a level, in texels: 0, then 1, 2, 4, …
-fn variance_of(b: &mut Builder, row: Value) -> Value {
-    let one = b.u32(1);
-    let doubled = b.shl_u(one, row);
-    let square = b.shr_u(doubled, one);
-    b.float_u(square)
+fn variance_of(row: Uint<'_>) -> Float<'_> {
+    ((row.literal(1) << row) >> 1).to_float()
 }
 
 impl Pyramid {
-    /// The pyramid of this layout; `key` names whatever the numbers depend on.
+    /// The pyramid of this layout; `key` names whatever its numbers depend on, and `bake` makes them
+    /// when they are first read.
     pub(crate) fn new(
-        lower: &mut Lower<'_>,
+        lower: &mut Lower<'_, '_>,
         key: &str,
         name: &str,
         layout: Layout,
-        numbers: impl FnOnce() -> Numbers,
+        bake: impl FnOnce(&Layout) -> Baked + Send + Sync + 'static,
     ) -> Self {
         let rows = layout.levels.iter().flat_map(|level| {
             let [nx, ny] = level.size.map(|n| n as f32);
@@ -81,7 +91,13 @@ impl Pyramid {
             [nx, ny, high as f32, low as f32]
         });
         let rows: Vec<f32> = rows.collect();
-        let numbers = lower.table(&format!("{key} numbers"), name, numbers);
+        let of = layout.clone();
+        let make: Box<dyn FnOnce() -> Baked + Send + Sync> = Box::new(move || bake(&of));
+        let baked = Arc::new(LazyLock::new(make));
+        let numbers = lower.table(&format!("{key} numbers"), name, || {
+            let baked = Arc::clone(&baked);
+            Numbers::lazy(layout.len(), move || baked.numbers.clone())
+        });
         let rows_name = format!("{name}_levels");
         let rows = lower.table(&format!("{key} rows"), &rows_name, || rows.into());
         Self {
@@ -89,251 +105,166 @@ impl Pyramid {
             numbers,
             rows,
             key: key.to_owned(),
+            baked,
         }
+    }
+
+    /// Texels in a row, and rows.
+    pub(crate) fn texels(&self) -> [f32; 2] {
+        self.layout.levels[0].size.map(|n| n as f32)
     }
 
     /// The function of a place (x, y), in pictures, that gives the value there: bilinear
     /// interpolation of the texels.
-    pub(crate) fn point(&self, lower: &mut Lower<'_>) -> FunctionRef {
+    pub(crate) fn point(&self, lower: &mut Lower<'_, '_>) -> FunctionRef {
         lower.function(&format!("{} point", self.key), |module| {
-            let mut b = Builder::new("texel", "A picture between its texels.");
-            let place = [b.param_f32("x"), b.param_f32("y")];
-            let zero = b.u32(0);
-            let mean = self.level(&mut b, zero, place, false).mean;
-            for (i, mean) in mean.into_iter().enumerate() {
-                b.result(format!("mean_{i}"), mean);
-            }
+            let b = &Builder::new("texel", "A picture between its texels.");
+            let place = ["x", "y"].map(|name| b.float_param(name));
+            self.level(b.uint(0), place, false).results(b);
             b.finish(module)
         })
     }
 
     /// The function of a place (x, y), in pictures, and a variance in texels that gives a [`Tap`];
     /// without `carries`, the means alone.
-    pub(crate) fn filtered(&self, lower: &mut Lower<'_>, carries: bool) -> FunctionRef {
+    pub(crate) fn filtered(&self, lower: &mut Lower<'_, '_>, carries: bool) -> FunctionRef {
         let key = format!("{} filtered {carries}", self.key);
         lower.function(&key, |module| self.build(module, carries))
     }
 
     fn build(&self, module: &mut Module, carries: bool) -> FunctionRef {
-        let mut b = Builder::new("level", "One level of a picture's pyramid of moments.");
-        let row = b.param("row", Type::U32);
-        let place = [b.param_f32("x"), b.param_f32("y")];
-        let tap = self.level(&mut b, row, place, carries);
-        tap.results(&mut b);
+        let b = &Builder::new("level", "One level of a picture's pyramid of moments.");
+        let row = b.uint_param("row");
+        let place = ["x", "y"].map(|name| b.float_param(name));
+        self.level(row, place, carries).results(b);
         let level = b.finish(module);
 
-        let mut b = Builder::new("filtered_picture", "A picture under a Gaussian.");
-        let place = [b.param_f32("x"), b.param_f32("y")];
-        let variance = b.param_f32("variance");
-        let (row, share, share_of_rest) = self.between(&mut b, variance);
-        let one = b.u32(1);
-        let next = b.add_u(row, one);
-        let [fine, coarse] = [row, next].map(|row| b.call(&level, &[row, place[0], place[1]]));
+        let b = &Builder::new("filtered_picture", "A picture under a Gaussian.");
+        let place = ["x", "y"].map(|name| b.float_param(name));
+        let variance = b.float_param("variance");
+        let (row, share, share_of_rest) = self.between(variance);
+        let [fine, coarse] = [row, row + 1].map(|row| b.call(&level, (row, place)));
         let numbers = 3 * self.layout.channels;
-        let mixed: Vec<Value> = (fine.iter().zip(&coarse).enumerate())
+        let mixed: Vec<Float<'_>> = (fine.iter().zip(&coarse).enumerate())
             .map(|(i, (&fine, &coarse))| {
                 let share = if i < numbers { share } else { share_of_rest };
-                let step = b.sub(coarse, fine);
-                let part = b.mul(step, share);
-                b.add(fine, part)
+                lerp(fine, coarse, share)
             })
             .collect();
-        Tap::of(&mixed, self.layout.channels).results(&mut b);
+        Tap::of(&mixed, self.layout.channels).results(b);
         b.finish(module)
     }
 
     /// The finer of the two levels between which a variance lies, the share of the coarser one by
     /// variance, and its share of what is beyond the gradient, which grows as σ⁴ from the texels.
-    fn between(&self, b: &mut Builder, variance: Value) -> (Value, Value, Value) {
-        let last = self.layout.levels.len() - 2;
-        let scaled = b.scale(variance, 1.0 / WIDENED);
-        let most = (last as f32).exp2();
-        let scaled = b.clamp(scaled, 0.0, most);
-        let one = b.f32(1.0);
-        let wide = b.max(scaled, one);
-        let log = b.ln(wide);
-        let level = b.scale(log, 1.0 / std::f32::consts::LN_2);
-        let level = b.offset(level, 1.0);
-        let level = b.floor(level);
-        let level = b.clamp(level, 0.0, last as f32);
-        let below = b.lt(scaled, one);
-        let zero = b.f32(0.0);
-        let level = b.select(below, zero, level);
-        let row = b.trunc_i(level);
-        let row = b.cast_u(row);
-        let own = variance_of(b, row);
-        let own = b.max(own, one);
-        let ratio = b.div(scaled, own);
-        let beyond = b.offset(ratio, -1.0);
-        let share = b.select(below, scaled, beyond);
-        let share = b.clamp(share, 0.0, 1.0);
+    fn between<'b>(&self, variance: Float<'b>) -> (Uint<'b>, Float<'b>, Float<'b>) {
+        let last = (self.layout.levels.len() - 2) as f32;
+        let scaled = (variance * (1.0 / WIDENED)).clamp(0.0, last.exp2());
+        let octaves = scaled.max(1.0).ln() * (1.0 / std::f32::consts::LN_2);
+        let level = (octaves + 1.0).floor().clamp(0.0, last);
+        let below = scaled.lt(1.0);
+        let row = below.select(0.0, level).to_int().to_uint();
+        let ratio = scaled / variance_of(row).max(1.0);
+        let share = below.select(scaled, ratio + -1.0).clamp(0.0, 1.0);
         // Between 0 and level 1: t² (3 − t)/2.
-        let square = b.square(share);
-        let bend = b.scale(share, -0.5);
-        let bend = b.offset(bend, 1.5);
-        let slow = b.mul(square, bend);
-        let rest = b.select(below, slow, share);
-        (row, share, rest)
+        let slow = share.square() * (share * -0.5 + 1.5);
+        (row, share, below.select(slow, share))
     }
 
-    fn row(&self, b: &mut Builder, row: Value, number: u32) -> Value {
-        let (row_length, number) = (b.u32(ROW), b.u32(number));
-        let first = b.mul_u(row, row_length);
-        let at = b.add_u(first, number);
-        b.load(self.rows, at)
+    /// A number of a level's row.
+    fn row<'b>(&self, row: Uint<'b>, number: u32) -> Float<'b> {
+        row.builder().load(self.rows, row * ROW + number)
     }
 
     /// The bilinear patch of a level at a place: its mean and gradient, and what its four samples
     /// and the way between them have of covariance beyond that gradient. Level 0 has none: it is
     /// the function itself.
-    fn level(&self, b: &mut Builder, row: Value, place: [Value; 2], carries: bool) -> Tap {
-        let sizes = [self.row(b, row, 0), self.row(b, row, 1)];
-        let [left, top] = [0, 1].map(|axis| {
-            let margin = self.layout.address[axis].margin() as f32;
-            let at = b.mul(place[axis], sizes[axis]);
-            let at = b.offset(at, margin - 0.5);
-            let last = b.offset(sizes[axis], 2.0 * margin - 1.0);
-            let zero = b.f32(0.0);
-            let at = b.max(at, zero);
-            let at = b.min(at, last);
-            let whole = b.floor(at);
-            let limit = b.offset(last, -1.0);
-            let whole = b.min(whole, limit);
-            (whole, b.sub(at, whole))
+    fn level<'b>(&self, row: Uint<'b>, place: [Float<'b>; 2], carries: bool) -> Tap<'b> {
+        let (b, n) = (row.builder(), self.layout.channels);
+        let sizes = [self.row(row, 0), self.row(row, 1)];
+        let margins = self.layout.address.map(|address| address.margin() as f32);
+        let [(left, s), (top, t)] = [0, 1].map(|axis| {
+            let last = sizes[axis] + (2.0 * margins[axis] - 1.0);
+            let at = (place[axis] * sizes[axis] + (margins[axis] - 0.5)).clamp(0.0, last);
+            let whole = at.floor().min(last + -1.0);
+            (whole, at - whole)
         });
-        let unsigned = |b: &mut Builder, x: Value| {
-            let whole = b.trunc_i(x);
-            b.cast_u(whole)
-        };
-        let margins = self.layout.address[0].margin() as f32;
-        let width = b.offset(sizes[0], 2.0 * margins);
-        let width = unsigned(b, width);
-        let none = {
-            let zero = b.u32(0);
-            b.eq_u(row, zero)
-        };
-        // Level 0 has no covariances.
-        let n = self.layout.channels;
-        let (few, all) = (b.u32(n as u32), b.u32((n + triangle(n)) as u32));
-        let stride = b.select(none, few, all);
-        let (x, y) = (unsigned(b, left.0), unsigned(b, top.0));
-        let rows = b.mul_u(y, width);
-        let sample = b.add_u(rows, x);
-        let (high, low) = (self.row(b, row, 2), self.row(b, row, 3));
-        let (high, low) = (unsigned(b, high), unsigned(b, low));
-        let twelve = b.u32(12);
-        let high = b.shl_u(high, twelve);
-        let offset = b.add_u(high, low);
-        let sample = b.mul_u(sample, stride);
-        let first = b.add_u(offset, sample);
-        let down = b.mul_u(width, stride);
-        let below = b.add_u(first, down);
-        let corners = [first, b.add_u(first, stride), below, b.add_u(below, stride)];
-        let number = |b: &mut Builder, i: usize| {
-            let i = b.u32(i as u32);
-            corners.map(|corner| {
-                let at = b.add_u(corner, i);
-                b.load(self.numbers, at)
-            })
-        };
-        let (s, t) = (left.1, top.1);
-        let mix = |b: &mut Builder, p: Value, q: Value, share: Value| {
-            let step = b.sub(q, p);
-            let part = b.mul(step, share);
-            b.add(p, part)
-        };
+
+        // The four samples; level 0 has no covariances.
+        let unsigned = |x: Float<'b>| x.to_int().to_uint();
+        let finest = row.equals(0);
+        let stride = finest.select(n as u32, (n + triangle(n)) as u32);
+        let width = unsigned(sizes[0] + 2.0 * margins[0]);
+        let sample = unsigned(top) * width + unsigned(left);
+        let offset = (unsigned(self.row(row, 2)) << 12) + unsigned(self.row(row, 3));
+        let first = offset + sample * stride;
+        let below = first + width * stride;
+        let corners = [first, first + stride, below, below + stride];
+        let numbers = |i: usize| corners.map(|at| b.load(self.numbers, at + i as u32));
+
         // Each channel's mean, and its steps: along x above and below, and along y.
-        let mut mean = Vec::new();
-        let mut steps = Vec::new();
+        let (mut mean, mut steps) = (Vec::new(), Vec::new());
         for channel in 0..n {
-            let [p, q, r, u] = number(b, channel);
-            let (above, under) = (mix(b, p, q, s), mix(b, r, u, s));
-            mean.push(mix(b, above, under, t));
-            steps.push([b.sub(q, p), b.sub(u, r), b.sub(under, above)]);
+            let [p, q, r, u] = numbers(channel);
+            let (above, under) = (lerp(p, q, s), lerp(r, u, s));
+            mean.push(lerp(above, under, t));
+            steps.push([q - p, u - r, under - above]);
         }
         if !carries {
-            return Tap {
-                mean,
-                gradient: Vec::new(),
-                rest: Vec::new(),
-            };
+            return Tap::of(&mean, n);
         }
-        let texels = self.layout.levels[0].size.map(|n| n as f32);
-        let per_texel = [0, 1].map(|axis| b.scale(sizes[axis], 1.0 / texels[axis]));
-        let gradient: Vec<[Value; 2]> = (steps.iter())
+        let texels = self.texels();
+        let per_texel = [0, 1].map(|axis| sizes[axis] * (1.0 / texels[axis]));
+        let gradient: Vec<Vec2<'b>> = (steps.iter())
             .map(|&[above, under, down]| {
-                let across = mix(b, above, under, t);
-                [b.mul(across, per_texel[0]), b.mul(down, per_texel[1])]
+                Vec2([lerp(above, under, t) * per_texel[0], down * per_texel[1]])
             })
             .collect();
-        let one = b.f32(1.0);
-        // The weights' own variance: s(1 − s) of a step.
-        let spread = [s, t].map(|x| {
-            let other = b.sub(one, x);
-            b.mul(x, other)
-        });
-        let sigma = variance_of(b, row);
-        let kernel = [0, 1].map(|axis| {
-            let square = b.square(per_texel[axis]);
-            let step = b.div(spread[axis], square);
-            b.add(sigma, step)
-        });
-        let zero = b.f32(0.0);
-        let mut rest = Vec::new();
-        for i in 0..n {
-            for k in 0..=i {
-                let [p, q, r, u] = number(b, n + rest.len());
-                let (above, under) = (mix(b, p, q, s), mix(b, r, u, s));
-                let inside = mix(b, above, under, t);
-                let ([a, c, d], [e, f, g]) = (steps[i], steps[k]);
-                let (above, under) = (b.mul(a, e), b.mul(c, f));
-                let across = mix(b, above, under, t);
-                let down = b.mul(d, g);
-                let between = b.dot(&[across, down], &spread);
-                let all = b.add(inside, between);
-                let linear = [0, 1].map(|axis| b.mul(gradient[i][axis], gradient[k][axis]));
-                let linear = b.dot(&linear, &kernel);
-                let mut left = b.sub(all, linear);
-                if i == k {
-                    left = b.max(left, zero);
-                }
-                rest.push(b.select(none, zero, left));
+
+        // The variance of the level's Gaussian and of the weights themselves: s(1 − s) of a step.
+        let spread = [s, t].map(|x| x * (1.0 - x));
+        let sigma = variance_of(row);
+        let kernel = [0, 1].map(|axis| sigma + spread[axis] / per_texel[axis].square());
+        let rest = pairs(n).enumerate().map(|(entry, (i, k))| {
+            let [p, q, r, u] = numbers(n + entry);
+            let inside = lerp(lerp(p, q, s), lerp(r, u, s), t);
+            let [above, under, down] = [0, 1, 2].map(|step| steps[i][step] * steps[k][step]);
+            let all = inside + dot([lerp(above, under, t), down], spread);
+            let linear = [0, 1].map(|axis| gradient[i][axis] * gradient[k][axis]);
+            let mut left = all - dot(linear, kernel);
+            if i == k {
+                left = left.max(0.0);
             }
-        }
+            finest.select(0.0, left)
+        });
         Tap {
+            rest: rest.collect(),
             mean,
             gradient,
-            rest,
         }
     }
 
-    /// The covariance that a Gaussian of this variance removes on average over the picture; `rows`
-    /// gives those of the levels, so many numbers.
-    pub(crate) fn removed(
+    /// The covariance that a Gaussian of this variance removes on average over the picture.
+    pub(crate) fn removed<'b>(
         &self,
-        lower: &mut Lower<'_>,
-        variance: Value,
-        rows: impl FnOnce(usize) -> Numbers,
-    ) -> Vec<Value> {
+        lower: &mut Lower<'_, 'b>,
+        variance: Float<'b>,
+    ) -> Vec<Float<'b>> {
+        let count = triangle(self.layout.channels);
         let key = format!("{} removed", self.key);
-        let length = self.layout.levels.len() * triangle(self.layout.channels);
-        let table = lower.table(&key, "removed_covariance", || rows(length));
-        let b = lower.b();
-        let (row, share, _) = self.between(b, variance);
-        let count = triangle(self.layout.channels) as u32;
-        let length = b.u32(count);
-        let first = b.mul_u(row, length);
-        let next = b.add_u(first, length);
-        (0..count)
+        let table = lower.table(&key, "removed_covariance", || {
+            let baked = Arc::clone(&self.baked);
+            Numbers::lazy(self.layout.levels.len() * count, move || {
+                baked.removed.iter().flatten().map(|&x| x as f32).collect()
+            })
+        });
+        let (row, share, _) = self.between(variance);
+        let first = row * count as u32;
+        let next = first + count as u32;
+        (0..count as u32)
             .map(|i| {
-                let i = b.u32(i);
-                let [fine, coarse] = [first, next].map(|row| {
-                    let at = b.add_u(row, i);
-                    b.load(table, at)
-                });
-                let step = b.sub(coarse, fine);
-                let part = b.mul(step, share);
-                b.add(fine, part)
+                let [fine, coarse] = [first, next].map(|row| lower.b().load(table, row + i));
+                lerp(fine, coarse, share)
             })
             .collect()
     }

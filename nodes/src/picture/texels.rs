@@ -1,7 +1,7 @@
 //! A picture as a function of a place, without moments: what is sampled to make a map of it.
 
 use super::planes::Planes;
-use mipless_codegen::ir::{Builder, Module, Numbers, Value};
+use mipless_codegen::ir::{Float, Module, Numbers};
 
 /// The texels of a picture, the channels of each together.
 #[derive(Clone, Debug)]
@@ -18,15 +18,9 @@ impl Texels {
         let numbers: Vec<f32> = (0..count)
             .flat_map(|i| planes.planes.iter().map(move |plane| plane[i] as f32))
             .collect();
-        let ranges = planes.planes.iter().map(|plane| {
-            let bounds = [f32::INFINITY, f32::NEG_INFINITY];
-            plane.iter().fold(bounds, |[low, high], &x| {
-                [low.min(x as f32), high.max(x as f32)]
-            })
-        });
         Self {
             size: planes.size,
-            ranges: ranges.collect(),
+            ranges: planes.ranges(),
             numbers: numbers.into(),
         }
     }
@@ -43,61 +37,48 @@ impl Texels {
 
     /// The channels at a place of the unit square, the first row at 0, between texels linearly;
     /// beyond the edges the picture is its edge, or repeats.
-    pub(crate) fn at(
+    pub(crate) fn at<'b>(
         &self,
-        b: &mut Builder,
         module: &mut Module,
-        place: [Value; 2],
+        place: [Float<'b>; 2],
         periodic: bool,
-    ) -> Vec<Value> {
+    ) -> Vec<Float<'b>> {
         let table = module.table("texels", self.numbers.clone());
-        let axes = [0, 1].map(|axis| {
+        let [(columns, across), (rows, down)] = [0, 1].map(|axis| {
             let n = self.size[axis] as f32;
-            let at = b.scale(place[axis], n);
-            let at = b.offset(at, -0.5);
-            let whole = b.floor(at);
-            let share = b.sub(at, whole);
-            let next = b.offset(whole, 1.0);
-            let [zero, last, first] = [0.0, n - 1.0, n].map(|x| b.f32(x));
-            let (before, after) = if periodic {
-                let (outside, over) = (b.lt(whole, zero), b.lt(next, first));
-                (b.select(outside, last, whole), b.select(over, next, zero))
+            let at = place[axis] * n + -0.5;
+            let whole = at.floor();
+            let next = whole + 1.0;
+            let neighbours = if periodic {
+                [
+                    whole.lt(0.0).select(n - 1.0, whole),
+                    next.lt(n).select(next, 0.0),
+                ]
             } else {
-                (b.max(whole, zero), b.min(next, last))
+                [whole.max(0.0), next.min(n - 1.0)]
             };
-            ([before, after], share)
+            (neighbours, at - whole)
         });
-        let [(columns, across), (rows, down)] = axes;
-        let channels = self.ranges.len();
+        let channels = self.ranges.len() as u32;
+        // Whole numbers below 2²⁴ are exact, and a picture has at most 2²² texels.
         let corners = rows.map(|row| {
-            let start = b.scale(row, self.size[0] as f32);
-            columns.map(|column| {
-                // Whole numbers below 2²⁴ are exact, and a picture has at most 2²² texels.
-                let texel = b.add(start, column);
-                let texel = b.trunc_i(texel);
-                let texel = b.cast_u(texel);
-                let stride = b.u32(channels as u32);
-                b.mul_u(texel, stride)
-            })
+            let start = row * self.size[0] as f32;
+            columns.map(|column| (start + column).to_int().to_uint() * channels)
         });
-        (0..channels as u32)
+        (0..channels)
             .map(|channel| {
-                let channel = b.u32(channel);
-                let [above, below] = corners.map(|[left, right]| {
-                    let [left, right] = [left, right].map(|first| {
-                        let index = b.add_u(first, channel);
-                        b.load(table, index)
-                    });
-                    lerp(b, left, right, across)
+                let [above, below] = corners.map(|row| {
+                    let [left, right] =
+                        row.map(|first| first.builder().load(table, first + channel));
+                    lerp(left, right, across)
                 });
-                lerp(b, above, below, down)
+                lerp(above, below, down)
             })
             .collect()
     }
 }
 
-fn lerp(b: &mut Builder, from: Value, to: Value, share: Value) -> Value {
-    let difference = b.sub(to, from);
-    let part = b.mul(difference, share);
-    b.add(from, part)
+/// So much of the way from one number to another.
+pub(crate) fn lerp<'b>(from: Float<'b>, to: Float<'b>, share: Float<'b>) -> Float<'b> {
+    from + (to - from) * share
 }

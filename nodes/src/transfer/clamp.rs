@@ -1,12 +1,10 @@
 //! Limiting to an interval.
 
+use crate::componentwise::{ternary, transfer};
+use crate::port::any;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-};
-
-use crate::componentwise::{maximum, minimum, ternary, transfer};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "clamp",
@@ -23,55 +21,38 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For a Gaussian input the mean is within 1e-5 of the interval, the remainder’s \
             standard deviation within 1e-4 of it. Held by `codegen/src/moments/tests.rs` against \
             dense numerical integration in f64.",
-        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1. \
-            Clark 1961, *The Greatest of a Finite Set of Random Variables*, eqs. 2 and 4–6. \
-            MaterialX 1.39 specification, node `clamp`.",
+        references: cite!(
+            bussgang,
+            "Clark 1961, *The Greatest of a Finite Set of Random Variables*, eqs. 2 and 4–6."; "clamp"
+        ),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new(
-            "low",
-            PortType::Any,
-            Default::Float(0.0),
-            "The least result.",
-        ),
-        PortSpec::new(
-            "high",
-            PortType::Any,
-            Default::Float(1.0),
-            "The largest result.",
-        ),
+        any("in", 0.0, "The signal."),
+        any("low", 0.0, "The least result."),
+        any("high", 1.0, "The largest result."),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "clamp_example",
-  "nodes": {
+    example: example! { "clamp", r#"
     "uv": { "type": "texcoord" },
     "u": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 0 } },
     "turns": { "type": "multiply", "inputs": { "in1": { "node": "u" }, "in2": 25 } },
     "wave": { "type": "sin", "inputs": { "in": { "node": "turns" } } },
     "clamp": { "type": "clamp", "inputs": { "in": { "node": "wave" }, "low": -0.3, "high": 0.6 } }
-  },
-  "outputs": { "out": { "node": "clamp" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     ternary(lower, node, ["in", "low", "high"], |lower, x, low, high| {
-        let b = lower.b();
-        if low.is_certain(b) && high.is_certain(b) {
-            let (low, high) = (low.flat_mean(b), high.flat_mean(b));
-            let clamp = Piecewise::clamp(b, low, high);
+        if low.is_certain() && high.is_certain() {
+            let clamp = Piecewise::clamp(low.flat_mean(), high.flat_mean());
             return transfer(lower, x, &clamp);
         }
         // In the order of the piecewise function: low wins where the bounds are swapped.
-        let below = minimum(lower, x, high);
-        maximum(lower, &below, low)
+        let below = lower.algebra.minimum(x, high);
+        lower.algebra.maximum(&below, low)
     })
 }

@@ -1,11 +1,9 @@
 //! Contrast.
 
 use crate::componentwise::{composed, product, ternary};
+use crate::port::any;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range,
-};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "contrast",
@@ -17,30 +15,22 @@ static SPEC: NodeSpec = NodeSpec {
         statistics: "By numbers, linear and exact. A varying amount multiplies as `multiply` does.",
         accuracy: "Exact to rounding by numbers; else as `multiply`. Held by `nodes/src/tests/law.rs` \
             against dense numerical integration in f64.",
-        references: "Bruneton & Neyret 2012, *A Survey of Non-linear Pre-filtering Methods for Efficient \
-            and Accurate Surface Shading*, §2.2 (linear maps of a mean and a covariance). \
-            MaterialX 1.39 specification, node `contrast`.",
+        references: cite!(linear; "contrast"),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new("amount", PortType::Any, Default::Float(1.0), "The factor.")
-            .range(Range::soft(0.0, 4.0)),
-        PortSpec::new("pivot", PortType::Any, Default::Float(0.5), "What stays."),
+        any("in", 0.0, "The signal."),
+        any("amount", 1.0, "The factor.").range(Range::soft(0.0, 4.0)),
+        any("pivot", 0.5, "What stays."),
     ],
     output: OutputType::Widest,
     class,
-    example: r#"{
-  "version": 1,
-  "name": "contrast_example",
-  "nodes": {
+    example: example! { "contrast", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
     "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 10}},
     "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
     "contrast": {"type": "contrast", "inputs": {"in": {"node": "wave"}, "amount": 1.6}}
-  },
-  "outputs": { "out": { "node": "contrast" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -55,14 +45,12 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let ports = ["in", "amount", "pivot"];
     ternary(lower, node, ports, |lower, x, amount, pivot| {
         composed(lower, |lower| {
             let pivot = lower.algebra.expose(pivot);
-            let across = x.sub(lower.b(), &pivot);
-            let scaled = product(lower, &across, amount);
-            scaled.add(lower.b(), &pivot)
+            product(lower, &(x - &pivot), amount) + pivot
         })
     })
 }

@@ -1,10 +1,9 @@
 //! Mirroring at an amount.
 
 use crate::componentwise::binary;
+use crate::port::any;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "invert",
@@ -16,37 +15,23 @@ static SPEC: NodeSpec = NodeSpec {
         statistics: "Linear, exact for any distribution.",
         accuracy: "Exact to rounding: the rule is an identity. Held by `nodes/src/tests.rs`, which \
             compares every node with its point value as the footprint goes to 0, in each mode.",
-        references: "Bruneton & Neyret 2012, *A Survey of Non-linear Pre-filtering Methods for Efficient \
-            and Accurate Surface Shading*, §2.2 (linear maps of a mean and a covariance). \
-            MaterialX 1.39 specification, node `invert`.",
+        references: cite!(linear; "invert"),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new(
-            "amount",
-            PortType::Any,
-            Default::Float(1.0),
-            "What the signal is taken from.",
-        ),
+        any("in", 0.0, "The signal."),
+        any("amount", 1.0, "What the signal is taken from."),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Linear,
-    example: r#"{
-  "version": 1,
-  "name": "invert_example",
-  "nodes": {
+    example: example! { "invert", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
     "invert": { "type": "invert", "inputs": { "in": { "node": "bands" } } }
-  },
-  "outputs": { "out": { "node": "invert" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    binary(lower, node, ["amount", "in"], |lower, amount, x| {
-        amount.sub(lower.b(), x)
-    })
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    binary(lower, node, ["amount", "in"], |_, amount, x| amount - x)
 }

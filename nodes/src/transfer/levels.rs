@@ -1,12 +1,12 @@
 //! Levels with gamma.
 
-use crate::componentwise::{composed, exposed, numbers, product, transfer};
-use mipless_codegen::ir::{Builder, Value};
-use mipless_codegen::moments::{Curve, Piecewise, RealPower, Reciprocal, Signal, Transfer};
+use crate::componentwise::{composed, exposed, numbers, transfer};
+use crate::port::any;
+use crate::transfer::range::{DOCLAMP, interpolated, passed};
+use mipless_codegen::ir::Float;
+use mipless_codegen::moments::{Curve, Piecewise, RealPower, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "levels",
@@ -25,132 +25,81 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For a Gaussian input and a gamma from 0.4 to 2.5 the mean is within 3e-4 of the \
             output range, the standard deviation within 5e-4. Held by `nodes/src/tests/law.rs` \
             against dense numerical integration in f64.",
-        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1. \
-            MaterialX 1.39 specification, node `range`.",
+        references: cite!(bussgang; "range"),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new(
-            "inlow",
-            PortType::Any,
-            Default::Float(0.0),
-            "What maps to outlow.",
-        ),
-        PortSpec::new(
-            "inhigh",
-            PortType::Any,
-            Default::Float(1.0),
-            "What maps to outhigh.",
-        ),
-        PortSpec::new(
-            "gamma",
-            PortType::Any,
-            Default::Float(1.0),
-            "The inverse of the exponent.",
-        )
-        .range(Range::hard(0.01, 100.0).with_soft(0.2, 5.0)),
-        PortSpec::new(
-            "outlow",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result at inlow.",
-        ),
-        PortSpec::new(
-            "outhigh",
-            PortType::Any,
-            Default::Float(1.0),
-            "The result at inhigh.",
-        ),
-        PortSpec::new(
-            "doclamp",
-            PortType::Exactly(Type::Boolean),
-            Default::Boolean(false),
-            "Whether the result is limited to lie between outlow and outhigh.",
-        )
-        .uniform(),
+        any("in", 0.0, "The signal."),
+        any("inlow", 0.0, "What maps to outlow."),
+        any("inhigh", 1.0, "What maps to outhigh."),
+        any("gamma", 1.0, "The inverse of the exponent.")
+            .range(Range::hard(0.01, 100.0).with_soft(0.2, 5.0)),
+        any("outlow", 0.0, "The result at inlow."),
+        any("outhigh", 1.0, "The result at inhigh."),
+        DOCLAMP,
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "levels_example",
-  "nodes": {
+    example: example! { "levels", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
     "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 25}},
     "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
     "levels": {"type": "levels", "inputs": {"in": {"node": "wave"}, "inlow": -0.8, "gamma": 2.2, "doclamp": true}}
-  },
-  "outputs": { "out": { "node": "levels" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let limited = lower.flag(node, "doclamp");
     let input = lower.bundle(node, "in");
     let [low, high, gamma] = ["inlow", "inhigh", "gamma"].map(|port| numbers(lower, node, port));
     let [outlow, outhigh] = ["outlow", "outhigh"].map(|port| exposed(lower, node, port));
     composed(lower, |lower| {
-        (0..input.len())
-            .map(|i| {
-                let b = lower.b();
-                let width = b.sub(high[i], low[i]);
-                let gain = Reciprocal.value(b, width);
-                let minus = b.neg(low[i]);
-                let share = input[i].offset(b, minus).scale(b, gain);
-                let share = curved(lower, &share, gamma[i], limited);
-                let span = outhigh[i].sub(lower.b(), &outlow[i]);
-                let rise = product(lower, &span, &share);
-                outlow[i].add(lower.b(), &rise)
-            })
-            .collect()
+        let component = |i: usize| {
+            let share = passed(&input[i], low[i], high[i]);
+            let share = curved(lower, &share, gamma[i], limited);
+            interpolated(lower, &outlow[i], &outhigh[i], &share)
+        };
+        (0..input.len()).map(component).collect()
     })
 }
 
 /// sign(t) |t|^(1/gamma), of t limited to [0, 1] or not.
-pub(crate) fn curved(lower: &mut Lower<'_>, share: &Signal, gamma: Value, limited: bool) -> Signal {
-    let b = lower.b();
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-    if b.as_constant(gamma) == Some(1.0) {
-        let clamp = Piecewise::clamp(b, zero, one);
+pub(crate) fn curved<'b>(
+    lower: &mut Lower<'_, 'b>,
+    share: &Signal<'b>,
+    gamma: Float<'b>,
+    limited: bool,
+) -> Signal<'b> {
+    let [zero, one] = [0.0, 1.0].map(|end| gamma.literal(end));
+    if gamma.as_constant() == Some(1.0) {
         return if limited {
-            transfer(lower, share, &clamp)
+            transfer(lower, share, &Piecewise::clamp(zero, one))
         } else {
             share.clone()
         };
     }
-    let least = b.f32(0.01);
-    let gamma = b.max(gamma, least);
-    let power = b.div(one, gamma);
+    let power = 1.0 / gamma.max(0.01);
+    let (kinks, flat, range) = if limited {
+        (vec![zero, one], [Some(zero), Some(one)], [0.0, 1.0])
+    } else {
+        (vec![zero], [None; 2], [f32::NEG_INFINITY, f32::INFINITY])
+    };
     let curve = Curve {
-        function: move |b: &mut Builder, t| signed_power(b, t, power, limited),
-        kinks: if limited { vec![zero, one] } else { vec![zero] },
-        flat: if limited {
-            [Some(zero), Some(one)]
-        } else {
-            [None; 2]
-        },
-        range: if limited {
-            [0.0, 1.0]
-        } else {
-            [f32::NEG_INFINITY, f32::INFINITY]
-        },
+        function: move |t| signed_power(t, power, limited),
+        kinks,
+        flat,
+        range,
     };
     transfer(lower, share, &curve)
 }
 
-fn signed_power(b: &mut Builder, t: Value, power: Value, limited: bool) -> Value {
-    let t = if limited { b.clamp(t, 0.0, 1.0) } else { t };
-    let magnitude = b.abs(t);
-    let raised = RealPower { power }.value(b, magnitude);
+fn signed_power<'b>(t: Float<'b>, power: Float<'b>, limited: bool) -> Float<'b> {
     if limited {
-        return raised;
+        return RealPower { power }.value(t.clamp(0.0, 1.0).abs());
     }
-    let (zero, minus) = (b.f32(0.0), b.neg(raised));
-    let negative = b.lt(t, zero);
-    b.select(negative, minus, raised)
+    let raised = RealPower { power }.value(t.abs());
+    t.lt(0.0).select(-raised, raised)
 }

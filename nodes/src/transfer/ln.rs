@@ -1,12 +1,11 @@
 //! Natural logarithm.
 
 use crate::componentwise::{transfer, unary};
-use mipless_codegen::ir::Builder;
+use crate::port::any;
+use mipless_codegen::ir::Float;
 use mipless_codegen::moments::Curve;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "ln",
@@ -22,29 +21,19 @@ static SPEC: NodeSpec = NodeSpec {
             standard deviation are within 5e-4; nearer, both are within 0.02 of values that reach \
             from −6.9 up. Held by `nodes/src/tests/law.rs` against dense numerical integration in \
             f64.",
-        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1. \
-            MaterialX 1.39 specification, node `ln`.",
+        references: cite!(bussgang; "ln"),
     },
-    inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(1.0), "The number.")
-            .range(Range::soft(0.0, 4.0)),
-    ],
+    inputs: &[any("in", 1.0, "The number.").range(Range::soft(0.0, 4.0))],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "ln_example",
-  "nodes": {
+    example: example! { "ln", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
     "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 25}},
     "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
     "lifted": {"type": "add", "inputs": {"in1": {"node": "wave"}, "in2": 1.5}},
     "ln": {"type": "ln", "inputs": {"in": {"node": "lifted"}}}
-  },
-  "outputs": { "out": { "node": "ln" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -53,17 +42,17 @@ pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 /// What lies below counts as this.
 const LEAST: f32 = 1e-3;
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let least = lower.b().f32(LEAST);
-    let floor = lower.b().ln(least);
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let least = lower.b().float(LEAST);
     let logarithm = Curve {
-        function: move |b: &mut Builder, x| {
-            let x = b.max(x, least);
-            b.ln(x)
-        },
+        function: limited_logarithm,
         kinks: vec![least],
-        flat: [Some(floor), None],
+        flat: [Some(least.ln()), None],
         range: [LEAST.ln(), f32::INFINITY],
     };
     unary(lower, node, "in", |lower, x| transfer(lower, x, &logarithm))
+}
+
+fn limited_logarithm(x: Float<'_>) -> Float<'_> {
+    x.max(LEAST).ln()
 }

@@ -1,12 +1,10 @@
 //! Power.
 
+use crate::componentwise::{binary, transfer};
+use crate::port::any;
 use mipless_codegen::moments::{Polynomial, RealPower, Transfer};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
-};
-
-use crate::componentwise::{binary, transfer};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "power",
@@ -27,31 +25,21 @@ static SPEC: NodeSpec = NodeSpec {
             (|m| + σ) to that power. Held by `codegen/src/moments/tests.rs` against dense \
             numerical integration in f64; a varying exponent and a base near 1 to 2e-3, by \
             `nodes/src/tests/combination.rs`.",
-        references: "Isserlis 1918, *On a formula for the product-moment coefficient of any order of a \
-            normal frequency distribution* (fourth moments from second ones). Bussgang 1952, \
-            *Crosscorrelation functions of amplitude-distorted Gaussian signals*; Stein 1981, \
-            *Estimation of the mean of a multivariate normal distribution*, lemma 1. MaterialX \
-            1.39 specification, node `power`.",
+        references: cite!(isserlis, bussgang; "power"),
     },
     inputs: &[
-        PortSpec::new("in1", PortType::Any, Default::Float(1.0), "The base."),
-        PortSpec::new("in2", PortType::Any, Default::Float(1.0), "The exponent.")
-            .range(Range::soft(0.0, 8.0)),
+        any("in1", 1.0, "The base."),
+        any("in2", 1.0, "The exponent.").range(Range::soft(0.0, 8.0)),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "power_example",
-  "nodes": {
+    example: example! { "power", r#"
     "uv": { "type": "texcoord" },
     "u": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 0 } },
     "turns": { "type": "multiply", "inputs": { "in1": { "node": "u" }, "in2": 25 } },
     "wave": { "type": "sin", "inputs": { "in": { "node": "turns" } } },
     "power": { "type": "power", "inputs": { "in1": { "node": "wave" }, "in2": 2 } }
-  },
-  "outputs": { "out": { "node": "power" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -63,21 +51,18 @@ fn whole(exponent: Option<f32>) -> Option<u32> {
     n.map(|n| n as u32)
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     binary(lower, node, ["in1", "in2"], |lower, x, exponent| {
-        let spreads = lower.mode().spreads();
-        let b = lower.b();
-        let power = exponent.flat_mean(b);
-        if spreads && !exponent.is_certain(b) {
+        if lower.mode().spreads() && !exponent.is_certain() {
             let inputs = [x.clone(), exponent.clone()];
             let ranges = [[0.0, f32::INFINITY]];
-            let mut out = lower.algebra.cubature(&inputs, &ranges, |b, values| {
-                let power = RealPower { power: values[1] };
-                vec![power.value(b, values[0])]
+            let mut out = (lower.algebra).cubature(&inputs, &ranges, |values| {
+                vec![RealPower { power: values[1] }.value(values[0])]
             });
             return out.remove(0);
         }
-        match whole(b.as_constant(power)) {
+        let power = exponent.flat_mean();
+        match whole(power.as_constant()) {
             Some(1) => x.clone(),
             Some(power) => transfer(lower, x, &Polynomial { power }),
             None => transfer(lower, x, &RealPower { power }),

@@ -1,10 +1,9 @@
 //! Levels of equal height.
 
 use crate::componentwise::unary;
+use crate::port::{any, number};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "quantize",
@@ -19,47 +18,30 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For a Gaussian input the mean is within 4e-6, the remainder’s standard deviation \
             within 1e-3 of 1 + σ. Held by `codegen/src/moments/tests/waves.rs` against dense \
             numerical integration in f64.",
-        references: "The characteristic function of the normal distribution, in *Abramowitz & Stegun* \
-            26.2. Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian \
-            signals*; Stein 1981, *Estimation of the mean of a multivariate normal distribution*, \
-            lemma 1.",
+        references: cite!(characteristic, bussgang),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new(
-            "steps",
-            PortType::Exactly(Type::Float),
-            Default::Float(4.0),
-            "How many levels a unit has.",
-        )
-        .range(Range::hard(0.001, 1e6).with_soft(1.0, 32.0)),
+        any("in", 0.0, "The signal."),
+        number("steps", 4.0, "How many levels a unit has.")
+            .range(Range::hard(0.001, 1e6).with_soft(1.0, 32.0)),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "quantize_example",
-  "nodes": {
+    example: example! { "quantize", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
     "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 25}},
     "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
     "quantize": {"type": "quantize", "inputs": {"in": {"node": "wave"}, "steps": 5}}
-  },
-  "outputs": { "out": { "node": "quantize" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let steps = lower.number(node, "steps");
     unary(lower, node, "in", |lower, x| {
-        let scaled = x.scale(lower.b(), steps);
-        let floor = lower.algebra.floor(&scaled);
-        let one = lower.b().f32(1.0);
-        let height = lower.b().div(one, steps);
-        floor.scale(lower.b(), height)
+        lower.algebra.floor(&(x * steps)) * (1.0 / steps)
     })
 }

@@ -1,13 +1,14 @@
 //! Affine map from a range to a range.
 
-use mipless_codegen::moments::{Piecewise, Reciprocal, Transfer};
+use crate::componentwise::{numbers, product, transfer};
+use crate::port::any;
+use mipless_codegen::ir::Float;
+use mipless_codegen::moments::{Piecewise, Reciprocal, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
     Type,
 };
-
-use crate::componentwise::{numbers, product, transfer};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "range",
@@ -25,60 +26,25 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "Without `doclamp`, exact to rounding. With it, the mean is within 1e-5 of the output \
             range for a Gaussian input. Held by `codegen/src/moments/tests.rs` against dense \
             numerical integration in f64.",
-        references: "Bruneton & Neyret 2012, *A Survey of Non-linear Pre-filtering Methods for Efficient \
-            and Accurate Surface Shading*, §2.2 (linear maps of a mean and a covariance). \
-            Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1. \
-            MaterialX 1.39 specification, node `range`.",
+        references: cite!(linear, bussgang; "range"),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new(
-            "inlow",
-            PortType::Any,
-            Default::Float(0.0),
-            "What maps to outlow.",
-        ),
-        PortSpec::new(
-            "inhigh",
-            PortType::Any,
-            Default::Float(1.0),
-            "What maps to outhigh.",
-        ),
-        PortSpec::new(
-            "outlow",
-            PortType::Any,
-            Default::Float(0.0),
-            "The result at inlow.",
-        ),
-        PortSpec::new(
-            "outhigh",
-            PortType::Any,
-            Default::Float(1.0),
-            "The result at inhigh.",
-        ),
-        PortSpec::new(
-            "doclamp",
-            PortType::Exactly(Type::Boolean),
-            Default::Boolean(false),
-            "Whether the result is limited to lie between outlow and outhigh.",
-        )
-        .uniform(),
+        any("in", 0.0, "The signal."),
+        any("inlow", 0.0, "What maps to outlow."),
+        any("inhigh", 1.0, "What maps to outhigh."),
+        any("outlow", 0.0, "The result at inlow."),
+        any("outhigh", 1.0, "The result at inhigh."),
+        DOCLAMP,
     ],
     output: OutputType::Widest,
     class,
-    example: r#"{
-  "version": 1,
-  "name": "range_example",
-  "nodes": {
+    example: example! { "range", r#"
     "uv": { "type": "texcoord" },
     "u": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 0 } },
     "turns": { "type": "multiply", "inputs": { "in1": { "node": "u" }, "in2": 25 } },
     "wave": { "type": "sin", "inputs": { "in": { "node": "turns" } } },
     "range": { "type": "range", "inputs": { "in": { "node": "wave" }, "inlow": -0.5, "inhigh": 0.5, "doclamp": true } }
-  },
-  "outputs": { "out": { "node": "range" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -96,29 +62,41 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+/// Whether the result stays within the range of the output.
+pub(super) const DOCLAMP: PortSpec = PortSpec::new(
+    "doclamp",
+    PortType::Exactly(Type::Boolean),
+    Default::Boolean(false),
+    "Whether the result is limited to lie between outlow and outhigh.",
+)
+.uniform();
+
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let limited = lower.flag(node, "doclamp");
-    let (input, low, high) = (
-        lower.bundle(node, "in"),
-        numbers(lower, node, "inlow"),
-        numbers(lower, node, "inhigh"),
-    );
-    let (outlow, outhigh) = (lower.bundle(node, "outlow"), lower.bundle(node, "outhigh"));
-    let component = |lower: &mut Lower<'_>, i: usize| {
-        let b = lower.b();
-        let width = b.sub(high[i], low[i]);
-        let gain = Reciprocal.value(b, width);
-        let minus = b.neg(low[i]);
-        // The share of the range that is passed, 0 at inlow and 1 at inhigh.
-        let mut share = input[i].offset(b, minus).scale(b, gain);
+    let [input, outlow, outhigh] = ["in", "outlow", "outhigh"].map(|port| lower.bundle(node, port));
+    let [low, high] = ["inlow", "inhigh"].map(|port| numbers(lower, node, port));
+    let component = |i: usize| {
+        let mut share = passed(&input[i], low[i], high[i]);
         if limited {
-            let (zero, one) = (b.f32(0.0), b.f32(1.0));
-            let clamp = Piecewise::clamp(b, zero, one);
-            share = transfer(lower, &share, &clamp);
+            let b = lower.b();
+            share = transfer(lower, &share, &Piecewise::clamp(b.float(0.0), b.float(1.0)));
         }
-        let span = outhigh[i].sub(lower.b(), &outlow[i]);
-        let rise = product(lower, &span, &share);
-        outlow[i].add(lower.b(), &rise)
+        interpolated(lower, &outlow[i], &outhigh[i], &share)
     };
-    (0..input.len()).map(|i| component(lower, i)).collect()
+    (0..input.len()).map(component).collect()
+}
+
+/// The share of the range that is passed, 0 at `low` and 1 at `high`.
+pub(super) fn passed<'b>(x: &Signal<'b>, low: Float<'b>, high: Float<'b>) -> Signal<'b> {
+    x.offset(-low) * Reciprocal.value(high - low)
+}
+
+/// low + (high − low) share.
+pub(super) fn interpolated<'b>(
+    lower: &mut Lower<'_, 'b>,
+    low: &Signal<'b>,
+    high: &Signal<'b>,
+    share: &Signal<'b>,
+) -> Signal<'b> {
+    low + product(lower, &(high - low), share)
 }

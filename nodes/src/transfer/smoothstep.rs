@@ -1,12 +1,10 @@
 //! Cubic step between two bounds.
 
+use crate::componentwise::{ternary, transfer};
+use crate::port::any;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-};
-
-use crate::componentwise::{ternary, transfer};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "smoothstep",
@@ -23,49 +21,30 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For a Gaussian input the mean is within 1e-4, the remainder’s standard deviation \
             within 3e-3. Held by `codegen/src/moments/tests.rs` against dense numerical \
             integration in f64.",
-        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1. \
-            MaterialX 1.39 specification, node `smoothstep`.",
+        references: cite!(bussgang; "smoothstep"),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal."),
-        PortSpec::new(
-            "low",
-            PortType::Any,
-            Default::Float(0.0),
-            "Where the rise begins.",
-        ),
-        PortSpec::new(
-            "high",
-            PortType::Any,
-            Default::Float(1.0),
-            "Where the rise ends.",
-        ),
+        any("in", 0.0, "The signal."),
+        any("low", 0.0, "Where the rise begins."),
+        any("high", 1.0, "Where the rise ends."),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "smoothstep_example",
-  "nodes": {
+    example: example! { "smoothstep", r#"
     "uv": { "type": "texcoord" },
     "u": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 0 } },
     "turns": { "type": "multiply", "inputs": { "in1": { "node": "u" }, "in2": 25 } },
     "wave": { "type": "sin", "inputs": { "in": { "node": "turns" } } },
     "smoothstep": { "type": "smoothstep", "inputs": { "in": { "node": "wave" }, "low": -0.2, "high": 0.4 } }
-  },
-  "outputs": { "out": { "node": "smoothstep" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     ternary(lower, node, ["in", "low", "high"], |lower, x, low, high| {
-        let b = lower.b();
-        let (low, high) = (low.flat_mean(b), high.flat_mean(b));
-        let smooth = Piecewise::smoothstep(b, low, high);
+        let smooth = Piecewise::smoothstep(low.flat_mean(), high.flat_mean());
         transfer(lower, x, &smooth)
     })
 }

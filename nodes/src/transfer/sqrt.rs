@@ -1,11 +1,10 @@
 //! Square root.
 
 use crate::componentwise::{transfer, unary};
+use crate::port::any;
 use mipless_codegen::moments::RealPower;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "sqrt",
@@ -19,38 +18,26 @@ static SPEC: NodeSpec = NodeSpec {
             Approximate. No moment is infinite, since what lies below 0 counts as 0.",
         accuracy: "For a Gaussian input the mean is within 1e-3, the standard deviation within 1e-3. \
             Held by `nodes/src/tests/law.rs` against dense numerical integration in f64.",
-        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1. \
-            MaterialX 1.39 specification, node `sqrt`.",
+        references: cite!(bussgang; "sqrt"),
     },
-    inputs: &[PortSpec::new(
-        "in",
-        PortType::Any,
-        Default::Float(0.0),
-        "The radicand.",
-    )],
+    inputs: &[any("in", 0.0, "The radicand.")],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "sqrt_example",
-  "nodes": {
+    example: example! { "sqrt", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
     "turns": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 25}},
     "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
     "lifted": {"type": "add", "inputs": {"in1": {"node": "wave"}, "in2": 1.2}},
     "sqrt": {"type": "sqrt", "inputs": {"in": {"node": "lifted"}}}
-  },
-  "outputs": { "out": { "node": "sqrt" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
-    let power = lower.b().f32(0.5);
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let power = lower.b().float(0.5);
     unary(lower, node, "in", |lower, x| {
         transfer(lower, x, &RealPower { power })
     })

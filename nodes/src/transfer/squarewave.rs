@@ -1,11 +1,10 @@
 //! Square wave.
 
 use crate::componentwise::{transfer, unary};
+use crate::port::{any, number};
 use mipless_codegen::moments::SquareWave;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "squarewave",
@@ -21,41 +20,26 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "For a Gaussian input the mean is within 5e-6, the remainder’s standard deviation \
             within 2e-3. Held by `codegen/src/moments/tests.rs` against dense numerical \
             integration in f64.",
-        references: "The characteristic function of the normal distribution, in *Abramowitz & Stegun* \
-            26.2. Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian \
-            signals*; Stein 1981, *Estimation of the mean of a multivariate normal distribution*, \
-            lemma 1.",
+        references: cite!(characteristic, bussgang),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal.")
-            .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "width",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "The share of a unit that is 1.",
-        )
-        .range(Range::hard(0.0, 1.0)),
+        any("in", 0.0, "The signal.").range(Range::soft(-1.0, 1.0)),
+        number("width", 0.5, "The share of a unit that is 1.").range(Range::hard(0.0, 1.0)),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "squarewave_example",
-  "nodes": {
+    example: example! { "squarewave", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
     "six": {"type": "multiply", "inputs": {"in1": {"node": "u"}, "in2": 6.3}},
     "squarewave": {"type": "squarewave", "inputs": {"in": {"node": "six"}, "width": 0.3}}
-  },
-  "outputs": { "out": { "node": "squarewave" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let width = lower.number(node, "width");
     unary(lower, node, "in", |lower, x| {
         transfer(lower, x, &SquareWave { width })

@@ -1,12 +1,10 @@
 //! Threshold.
 
+use crate::componentwise::{binary, difference, transfer};
+use crate::port::any;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
-};
-
-use crate::componentwise::{binary, difference, transfer};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
 static SPEC: NodeSpec = NodeSpec {
     name: "step",
@@ -22,48 +20,30 @@ static SPEC: NodeSpec = NodeSpec {
             noise the error is the distance of its distribution from a Gaussian, which its page \
             states. Held by `codegen/src/moments/tests.rs` against dense numerical integration \
             in f64.",
-        references: "Bussgang 1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*; \
-            Stein 1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1. \
-            Heitz, Nowrouzezahrai, Poulin & Neyret 2013, *Filtering Color Mapped Textures and \
-            Surfaces*, §4.",
+        references: cite!(bussgang, color_mapped),
     },
     inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The signal.")
-            .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "edge",
-            PortType::Any,
-            Default::Float(0.0),
-            "Where the result becomes 1.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
+        any("in", 0.0, "The signal.").range(Range::soft(-1.0, 1.0)),
+        any("edge", 0.0, "Where the result becomes 1.").range(Range::soft(-1.0, 1.0)),
     ],
     output: OutputType::Widest,
     class: |_| Behaviour::Function,
-    example: r#"{
-  "version": 1,
-  "name": "step_example",
-  "nodes": {
+    example: example! { "step", r#"
     "uv": { "type": "texcoord" },
     "u": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 0 } },
     "turns": { "type": "multiply", "inputs": { "in1": { "node": "u" }, "in2": 25 } },
     "wave": { "type": "sin", "inputs": { "in": { "node": "turns" } } },
     "step": { "type": "step", "inputs": { "in": { "node": "wave" }, "edge": 0.3 } }
-  },
-  "outputs": { "out": { "node": "step" } }
-}"#,
+"# },
 };
 
 /// The definition.
 pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let zero = lower.b().float(0.0);
     binary(lower, node, ["in", "edge"], |lower, x, edge| {
         // The difference is small where it matters: a position keeps its detail far from 0.
-        let distance = difference(lower, x, edge);
-        let b = lower.b();
-        let zero = b.f32(0.0);
-        let step = Piecewise::step(b, zero);
-        transfer(lower, &distance, &step)
+        transfer(lower, &difference(x, edge), &Piecewise::step(zero))
     })
 }

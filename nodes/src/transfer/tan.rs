@@ -1,12 +1,11 @@
 //! Tangent.
 
 use crate::componentwise::{composed, quotient, transfer, unary};
+use crate::port::any;
 use mipless_codegen::moments::Sine;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range,
-};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
+use std::f32::consts::FRAC_PI_2;
 
 static SPEC: NodeSpec = NodeSpec {
     name: "tan",
@@ -22,24 +21,16 @@ static SPEC: NodeSpec = NodeSpec {
         accuracy: "Exact at a point to 1e-5 away from the poles; filtered, not stated. Held by \
             `nodes/src/tests.rs`, which compares every node with its point value as the footprint \
             goes to 0.",
-        references: "Marsaglia 2006, *Ratios of Normal Variables*, §2 (no moments without truncation). \
-            MaterialX 1.39 specification, node `tan`.",
+        references: cite!(marsaglia; "tan"),
     },
-    inputs: &[
-        PortSpec::new("in", PortType::Any, Default::Float(0.0), "The angle.")
-            .range(Range::soft(-1.5, 1.5))
-            .unit("radians"),
-    ],
+    inputs: &[any("in", 0.0, "The angle.")
+        .range(Range::soft(-1.5, 1.5))
+        .unit("radians")],
     output: OutputType::Widest,
     class,
-    example: r#"{
-  "version": 1,
-  "name": "tan_example",
-  "nodes": {
+    example: example! { "tan", r#"
     "tan": {"type": "tan", "inputs": {"in": 0.7}}
-  },
-  "outputs": { "out": { "node": "tan" } }
-}"#,
+"# },
 };
 
 /// The definition.
@@ -57,12 +48,11 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower(lower: &mut Lower<'_>, node: &Node) -> Bundle {
+fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     unary(lower, node, "in", |lower, x| {
         composed(lower, |lower| {
             let x = lower.algebra.expose(x);
-            let phase = std::f32::consts::FRAC_PI_2;
-            let [sine, cosine] = [0.0, phase].map(|phase| transfer(lower, &x, &Sine { phase }));
+            let [sine, cosine] = [0.0, FRAC_PI_2].map(|phase| transfer(lower, &x, &Sine { phase }));
             quotient(lower, &sine, &cosine)
         })
     })

@@ -1,5 +1,6 @@
 //! Baking: separable convolutions of the samples in f64, one pair of kernels a level.
 
+use super::super::tabulated::{deviation, gaussian};
 use super::{Grid, LEVELS, MOST, Moment, Packing, SIDE, intervals, sigma};
 
 /// How far a Gaussian reaches, in σ.
@@ -46,16 +47,14 @@ impl Kernel {
             let last = (place + REACH * sd).ceil() as i64;
             let scores = (first..last).map(|i| (i as f64 + 0.5 - place) / sd);
             let scores: Vec<f64> = scores.collect();
-            let mut weights: Vec<f64> = scores.iter().map(|z| (-0.5 * z * z).exp()).collect();
-            let total: f64 = weights.iter().sum();
-            weights.iter_mut().for_each(|w| *w /= total);
+            let weights = gaussian(&scores);
             let first_moment: f64 = weights.iter().zip(&scores).map(|(w, z)| w * z).sum();
             // A constant has no slope.
-            let products = weights
-                .iter()
-                .zip(&scores)
-                .map(|(w, z)| w * (z - first_moment));
-            scored.push((first, products.collect()));
+            let products = weights.iter().zip(&scores);
+            scored.push((
+                first,
+                products.map(|(w, z)| w * (z - first_moment)).collect(),
+            ));
             plain.push((first, weights));
         }
         [plain, scored].map(|rows| Self { rows })
@@ -156,19 +155,11 @@ impl Samples {
         }
     }
 
-    /// The standard deviation of a Gaussian over these samples that has the level's variance with
-    /// the box that each sample is the average of, in samples.
-    fn deviation(&self, sigma: f64) -> f64 {
-        let cell = SIDE as f64 / self.side as f64;
-        let wanted = sigma * self.side as f64;
-        (wanted * wanted - (1.0 - 1.0 / (cell * cell)) / 12.0).sqrt()
-    }
-
     fn level(&self, level: usize, moment: Moment, periodic: bool) -> Vec<f64> {
         let count = intervals(level);
         let step = self.side as f64 / count as f64;
         let places = (0..=count).map(|i| i as f64 * step);
-        let kernels = Kernel::gaussian(places, self.deviation(sigma(level)));
+        let kernels = Kernel::gaussian(places, deviation(sigma(level), SIDE, self.side));
         self.convolved(&kernels, &kernels, moment, periodic)
     }
 
@@ -229,18 +220,19 @@ pub(super) fn error(
         for level in 0..LEVELS - 1 {
             samples.coarsen(level);
             let next = first + super::texels(level);
+            let header = &header[2 * component..];
+            let (low, step) = (f64::from(header[0]), f64::from(header[1]));
             let (fine, coarse) = (sigma(level), sigma(level + 1));
             for share in BETWEEN {
-                let sd = fine + share * (coarse - fine);
-                let u: Vec<f64> = (0..PLACES)
-                    .map(|i| (0.113 + (i as f64 + share) * 0.754_877_666).fract())
-                    .collect();
-                let v: Vec<f64> = (0..PLACES)
-                    .map(|i| (0.271 + (i as f64 + share) * 0.569_840_291).fract())
-                    .collect();
+                let steps = [(0.113, 0.754_877_666), (0.271, 0.569_840_291)];
+                let [u, v] = steps.map(|(start, step)| {
+                    let places = (0..PLACES).map(|i| (start + (i as f64 + share) * step).fract());
+                    places.collect::<Vec<f64>>()
+                });
+                let sd = deviation(fine + share * (coarse - fine), SIDE, samples.side);
                 let kernels = [&u, &v].map(|places| {
                     let places = places.iter().map(|p| p * samples.side as f64);
-                    Kernel::gaussian(places, samples.deviation(sd))
+                    Kernel::gaussian(places, sd)
                 });
                 let exact = samples.convolved(&kernels[0], &kernels[1], moment, periodic);
                 for (row, &v) in v.iter().enumerate() {
@@ -248,10 +240,7 @@ pub(super) fn error(
                         let [a, b] = [(level, first), (level + 1, next)].map(|(level, first)| {
                             texel(table, packing, component, (intervals(level), first), [u, v])
                         });
-                        let code = a + share * (b - a);
-                        let low = f64::from(header[2 * component]);
-                        let step = f64::from(header[2 * component + 1]);
-                        let value = low + step * code;
+                        let value = low + step * (a + share * (b - a));
                         worst = worst.max((value - exact[row * PLACES + column]).abs());
                     }
                 }

@@ -4,7 +4,7 @@
 //! subnormal: 30 bits are used, the sign stays 0 and the exponent lies between 64 and 191 (in its
 //! stored form). One component is stored as it is.
 
-use crate::ir::{Builder, Value};
+use crate::ir::Float;
 
 /// What is added to the packed bits so that the exponent is that of a normal number.
 const BASE: u32 = 64 << 23;
@@ -56,24 +56,28 @@ impl Packing {
         }
         let header = table.clone();
         for texel in 0..components[0].len() {
-            let mut word = 0;
-            let mut shift = 0;
-            for (i, values) in components.iter().enumerate() {
+            let words = self.fields().enumerate().map(|(i, (shift, most))| {
                 let (low, step) = (f64::from(header[2 * i]), f64::from(header[2 * i + 1]));
-                let most = (1u32 << self.bits[i]) - 1;
                 let code = if step > 0.0 {
-                    ((values[texel] - low) / step)
-                        .round()
-                        .clamp(0.0, most.into())
+                    let code = ((components[i][texel] - low) / step).round();
+                    code.clamp(0.0, most.into())
                 } else {
                     0.0
                 };
-                word |= (code as u32) << shift;
-                shift += self.bits[i];
-            }
-            table.push(f32::from_bits(BASE + word));
+                (code as u32) << shift
+            });
+            table.push(f32::from_bits(BASE + words.sum::<u32>()));
         }
         table
+    }
+
+    /// Of each component: how far its code is shifted, and the largest code.
+    fn fields(&self) -> impl Iterator<Item = (u32, u32)> {
+        let bits = self.bits.into_iter().take(self.components);
+        bits.scan(0, |end, bits| {
+            *end += bits;
+            Some((*end - bits, (1u32 << bits) - 1))
+        })
     }
 
     /// The codes of a texel, as the shader reads them.
@@ -82,52 +86,38 @@ impl Packing {
             return vec![f64::from(number)];
         }
         let word = number.to_bits() - BASE;
-        let mut shift = 0;
-        (self.bits[..self.components].iter())
-            .map(|&bits| {
-                let code = (word >> shift) & ((1 << bits) - 1);
-                shift += bits;
-                f64::from(code)
-            })
-            .collect()
+        let codes = self
+            .fields()
+            .map(|(shift, most)| f64::from((word >> shift) & most));
+        codes.collect()
     }
 
     /// The same in IR.
-    pub(super) fn unpack(&self, b: &mut Builder, number: Value) -> Vec<Value> {
+    pub(super) fn unpack<'b>(&self, number: Float<'b>) -> Vec<Float<'b>> {
         if self.components == 1 {
             return vec![number];
         }
-        let bits = b.bits(number);
-        let base = b.u32(BASE);
-        let word = b.sub_u(bits, base);
-        let mut shift = 0;
-        (self.bits[..self.components].iter())
-            .map(|&width| {
-                let by = b.u32(shift);
-                let moved = b.shr_u(word, by);
-                let mask = b.u32((1 << width) - 1);
-                shift += width;
-                let code = b.and_u(moved, mask);
-                b.float_u(code)
-            })
-            .collect()
+        let word = number.bits() - BASE;
+        let codes = self
+            .fields()
+            .map(|(shift, most)| ((word >> shift) & most).to_float());
+        codes.collect()
     }
 
     /// Values from (weighted sums of) codes: low + step · code, by the table's header.
-    pub(super) fn decode(&self, b: &mut Builder, table: u32, codes: &[Value]) -> Vec<Value> {
+    pub(super) fn decode<'b>(
+        &self,
+        table: u32,
+        codes: impl Iterator<Item = Float<'b>>,
+    ) -> Vec<Float<'b>> {
         if self.components == 1 {
-            return codes.to_vec();
+            return codes.collect();
         }
-        (0u32..)
-            .zip(codes)
-            .map(|(i, &code)| {
-                let [low, step] = [2 * i, 2 * i + 1].map(|at| {
-                    let at = b.u32(at);
-                    b.load(table, at)
-                });
-                let part = b.mul(step, code);
-                b.add(low, part)
-            })
-            .collect()
+        let values = (0u32..).zip(codes).map(|(i, code)| {
+            let b = code.builder();
+            let [low, step] = [2 * i, 2 * i + 1].map(|at| b.load(table, b.uint(at)));
+            low + step * code
+        });
+        values.collect()
     }
 }

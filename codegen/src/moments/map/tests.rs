@@ -2,16 +2,17 @@
 
 use super::{Domain, Grid, Map, SIDE};
 use crate::cpu::{Evaluator, Input, Scratch};
-use crate::ir::{Builder, FunctionRef, Module, Value};
+use crate::ir::{Builder, Float, FunctionRef, Module, Sym2, Vec2};
 use std::sync::{Arc, LazyLock};
 
+/// A function of two numbers.
+type Build = for<'b> fn([Float<'b>; 2]) -> Float<'b>;
+
 /// A map of one component on [0, 1]² within [0, 1].
-fn map(module: &mut Module, periodic: bool, build: fn(&mut Builder, [Value; 2]) -> Value) -> Map {
+fn map(module: &mut Module, periodic: bool, build: Build) -> Map {
     let function = move |module: &mut Module| -> FunctionRef {
-        let mut b = Builder::new("of", "A test.");
-        let place = ["x", "y"].map(|name| b.param_f32(name));
-        let value = build(&mut b, place);
-        b.result("value", value);
+        let b = &Builder::new("of", "A test.");
+        b.result("value", build(["x", "y"].map(|name| b.float_param(name))));
         b.finish(module)
     };
     let domain = Domain {
@@ -45,32 +46,18 @@ fn map(module: &mut Module, periodic: bool, build: fn(&mut Builder, [Value; 2]) 
 type Place = ([f64; 2], [f64; 3]);
 
 /// Mean, slopes and √distortion of the map at each place, in f32.
-fn moments(
-    periodic: bool,
-    build: fn(&mut Builder, [Value; 2]) -> Value,
-    places: &[Place],
-) -> Vec<[f64; 4]> {
+fn moments(periodic: bool, build: Build, places: &[Place]) -> Vec<[f64; 4]> {
     let mut module = Module::default();
     let map = map(&mut module, periodic, build);
-    let mut b = Builder::new("moments", "A test.");
-    let parameters: Vec<Value> = ["x", "y", "xx", "xy", "yy"]
-        .iter()
-        .map(|name| b.param_f32(*name))
-        .collect();
-    let [x, y, xx, xy, yy] = parameters[..] else {
-        panic!("five parameters")
-    };
-    let moments = map.moments(&mut b, [x, y], [xx, xy, yy]);
+    let b = &Builder::new("moments", "A test.");
+    let mean = ["x", "y"].map(|name| b.float_param(name));
+    let covariance = ["xx", "xy", "yy"].map(|name| b.float_param(name));
+    let moments = map.moments(Vec2(mean), Sym2(covariance));
     let m = &moments[0];
-    let root = b.sqrt(m.distortion);
-    for (name, value) in [
-        ("mean", m.mean),
-        ("x", m.slopes[0]),
-        ("y", m.slopes[1]),
-        ("root", root),
-    ] {
-        b.result(format!("result_{name}"), value);
-    }
+    b.result("result_mean", m.mean);
+    b.result("result_x", m.slopes[0]);
+    b.result("result_y", m.slopes[1]);
+    b.result("result_root", m.distortion.sqrt());
     b.finish(&mut module);
     let module = module.pruned();
     let column = |f: &dyn Fn(&Place) -> f64| -> Vec<f32> {
@@ -147,13 +134,8 @@ fn errors(
 }
 
 /// 1 where 0.6 x + 0.8 y ≥ 0.7.
-fn half_plane(b: &mut Builder, place: [Value; 2]) -> Value {
-    let (p, q) = (b.f32(0.6), b.f32(0.8));
-    let across = b.dot(&place, &[p, q]);
-    let edge = b.f32(0.7);
-    let on = b.le(edge, across);
-    let (one, zero) = (b.f32(1.0), b.f32(0.0));
-    b.select(on, one, zero)
+fn half_plane([x, y]: [Float<'_>; 2]) -> Float<'_> {
+    (0.6 * x + 0.8 * y).ge(0.7).select(1.0, 0.0)
 }
 
 #[test]
@@ -178,15 +160,9 @@ fn a_half_plane_is_that_of_the_normal_distribution() {
 }
 
 /// ½ + ½ sin(2π·2x) cos(2π·y).
-fn waves(b: &mut Builder, [x, y]: [Value; 2]) -> Value {
-    let (x, y) = (
-        b.scale(x, 2.0 * std::f32::consts::TAU),
-        b.scale(y, std::f32::consts::TAU),
-    );
-    let (s, c) = (b.sin(x), b.cos(y));
-    let product = b.mul(s, c);
-    let half = b.scale(product, 0.5);
-    b.offset(half, 0.5)
+fn waves([x, y]: [Float<'_>; 2]) -> Float<'_> {
+    let [x, y] = [x * (2.0 * std::f32::consts::TAU), y * std::f32::consts::TAU];
+    0.5 * (x.sin() * y.cos()) + 0.5
 }
 
 /// sin(k·x)-shaped terms of a product of waves: its mean and slopes are exact sums of two sines.

@@ -2,61 +2,49 @@
 //! much the slopes at its ends, in units of the segment, differ from the straight one's. A smooth
 //! step of height Δ is p = q = −Δ; p = −q is a parabola.
 
-use super::super::{Gaussian, Moments, Normal};
-use crate::ir::{Builder, Value};
+use super::super::{Gaussian, Normal};
+use super::CLOSEST;
+use crate::ir::{Float, dot};
 
 /// The slopes p and q of a bump at the two ends of its segment, by τ.
 #[derive(Clone, Copy, Debug)]
-pub struct Bump {
+pub struct Bump<'b> {
     /// p: at τ = 0.
-    pub start: Value,
+    pub start: Float<'b>,
     /// q: at τ = 1.
-    pub end: Value,
+    pub end: Float<'b>,
 }
 
-impl Bump {
+impl<'b> Bump<'b> {
     /// p = q = −Δ: the straight segment of height Δ becomes 3τ² − 2τ³.
-    pub(super) fn smooth(b: &mut Builder, height: Value) -> Self {
-        let slope = b.neg(height);
+    pub(super) fn smooth(height: Float<'b>) -> Self {
         Self {
-            start: slope,
-            end: slope,
-        }
-    }
-
-    /// a times it.
-    pub(super) fn scale(self, b: &mut Builder, a: Value) -> Self {
-        Self {
-            start: b.mul(self.start, a),
-            end: b.mul(self.end, a),
+            start: -height,
+            end: -height,
         }
     }
 
     /// The bump at τ in [0, 1].
-    pub(super) fn at(self, b: &mut Builder, t: Value) -> Value {
-        let one = b.f32(1.0);
-        let back = b.sub(one, t);
-        let (rise, fall) = (b.mul(self.start, back), b.mul(self.end, t));
-        let slope = b.sub(rise, fall);
-        let product = b.mul(t, back);
-        b.mul(product, slope)
+    pub(super) fn at(self, t: Float<'b>) -> Float<'b> {
+        let back = 1.0 - t;
+        t * back * (self.start * back - self.end * t)
     }
 
     /// Whether it is the constant 0.
-    pub(super) fn is_flat(self, b: &Builder) -> bool {
-        b.is_zero(self.start) && b.is_zero(self.end)
+    pub(super) fn is_flat(self) -> bool {
+        self.start.is_zero() && self.end.is_zero()
     }
 }
 
 /// A bump between `from` and `to`, else 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
+pub(super) struct Segment<'b> {
     /// Where it begins.
-    pub(super) from: Value,
+    pub(super) from: Float<'b>,
     /// Where it ends.
-    pub(super) to: Value,
+    pub(super) to: Float<'b>,
     /// Its shape.
-    pub(super) bump: Bump,
+    pub(super) bump: Bump<'b>,
 }
 
 /// Nodes and weights of Gauss–Legendre on [0, 1], degree 7.
@@ -67,176 +55,109 @@ const NODES: [(f32, f32); 4] = [
     (0.930_568_16, 0.173_927_42),
 ];
 
-impl Segment {
-    fn inverse_width(&self, b: &mut Builder) -> Value {
-        let width = b.sub(self.to, self.from);
-        let least = b.f32(1e-6);
-        let width = b.max(width, least);
-        let one = b.f32(1.0);
-        b.div(one, width)
+impl<'b> Segment<'b> {
+    fn inverse_width(&self) -> Float<'b> {
+        1.0 / (self.to - self.from).max(CLOSEST)
     }
 
     /// The bump at x.
-    pub(super) fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let inverse = self.inverse_width(b);
-        let t = b.sub(x, self.from);
-        let t = b.mul(t, inverse);
-        let t = b.clamp(t, 0.0, 1.0);
-        self.bump.at(b, t)
+    pub(super) fn value(&self, x: Float<'b>) -> Float<'b> {
+        let t = (x - self.from) * self.inverse_width();
+        self.bump.at(t.clamp(0.0, 1.0))
     }
 
-    /// The moments of the bump; its distortion is not its own but the whole function's.
-    pub(super) fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let inverse_width = self.inverse_width(b);
-        // In units of the segment: mean m and spread s; ends at standard scores a and e.
-        let m = b.sub(x.mean, self.from);
-        let m = b.mul(m, inverse_width);
-        let width = b.sub(self.to, self.from);
-        let inverse = b.mul(width, x.inverse_sd);
-        let s = b.mul(x.sd, inverse_width);
-        let exact = self.truncated(b, x, m, s, inverse);
-        let quadrature = quadrature(b, self.bump, m, inverse);
+    /// The mean of the bump and its three derivatives by m; its distortion is not its own but the
+    /// whole function's.
+    pub(super) fn moments(&self, x: &Gaussian<'b>) -> [Float<'b>; 4] {
+        let inverse_width = self.inverse_width();
+        // In units of the segment: the mean, and 1/σ.
+        let m = (x.mean - self.from) * inverse_width;
+        let inverse = (self.to - self.from) * x.inverse_sd;
+        let exact = self.truncated(x, m, x.sd * inverse_width, inverse);
+        let quadrature = quadrature(self.bump, m, inverse);
         // Below this width in σ the truncated moments cancel and the density is smooth.
-        let least = b.f32(1.2);
-        let wide = b.lt(least, inverse);
-        let mut pick = |e: Value, q: Value, power: u32| {
-            let mut value = b.select(wide, e, q);
-            for _ in 0..power {
-                value = b.mul(value, inverse_width);
-            }
-            value
-        };
-        Moments {
-            mean: pick(exact.mean, quadrature.mean, 0),
-            slope: pick(exact.slope, quadrature.slope, 1),
-            curvature: pick(exact.curvature, quadrature.curvature, 2),
-            third: pick(exact.third, quadrature.third, 3),
-            distortion: exact.distortion,
-        }
+        let wide = inverse.gt(1.2);
+        std::array::from_fn(|order| {
+            let derivative = wide.select(exact[order], quadrature[order]);
+            (0..order).fold(derivative, |derivative, _| derivative * inverse_width)
+        })
     }
 
-    /// By truncated moments M_k = ∫ zᵏ φ dz over the segment and the Taylor series of the bump at m.
+    /// By truncated moments M_k = ∫ zᵏ φ dz over the segment and the Taylor series of the bump at m,
+    /// for a Gaussian of mean m and deviation s in units of the segment; `inverse` is 1/s.
     fn truncated(
         &self,
-        b: &mut Builder,
-        x: &Gaussian,
-        m: Value,
-        s: Value,
-        inverse: Value,
-    ) -> Moments {
-        let (from, to) = (b.sub(x.mean, self.from), b.sub(x.mean, self.to));
-        let (n0, n1) = (
-            Normal::at(b, from, x.inverse_sd),
-            Normal::at(b, to, x.inverse_sd),
-        );
-        let (a, e) = (b.neg(n0.z), b.neg(n1.z));
-        let (fa, fe) = (n0.density, n1.density);
-        let m0 = probability(b, &n0, &n1);
-        let m1 = b.sub(fa, fe);
-        let (afa, efe) = (b.mul(a, fa), b.mul(e, fe));
-        let edge = b.sub(afa, efe);
-        let m2 = b.add(m0, edge);
-        let (aafa, eefe) = (b.mul(a, afa), b.mul(e, efe));
-        let edge2 = b.sub(aafa, eefe);
-        let m3 = b.add(m1, m1);
-        let m3 = b.add(m3, edge2);
-        let s2 = b.square(s);
+        x: &Gaussian<'b>,
+        m: Float<'b>,
+        s: Float<'b>,
+        inverse: Float<'b>,
+    ) -> [Float<'b>; 4] {
+        let [left, right] = [self.from, self.to].map(|at| Normal::at(x.mean - at, x.inverse_sd));
+        // zᵏφ at both ends.
+        let [a, e] = [-left.z, -right.z];
+        let [fa, fe] = [left.density, right.density];
+        let [afa, efe] = [a * fa, e * fe];
+        let m0 = probability(&left, &right);
+        let m1 = fa - fe;
+        let m2 = m0 + (afa - efe);
+        let m3 = m1 + m1 + (a * afa - e * efe);
+
         // c(m), c′(m) = p − 2(2p + q)m + 3(p + q)m², c″/2 = 3(p + q)m − (2p + q), c‴/6 = p + q.
         let Bump { start: p, end: q } = self.bump;
-        let cubic = b.add(p, q);
-        let square = b.add(p, cubic);
-        let value = self.bump.at(b, m);
-        let cubic3 = b.scale(cubic, 3.0);
-        let bent = b.mul(cubic3, m);
-        let half_second = b.sub(bent, square);
-        let first = b.sub(half_second, square);
-        let first = b.mul(first, m);
-        let first = b.add(p, first);
-        let s3 = b.mul(s2, s);
-        let c1 = b.mul(first, s);
-        let c2 = b.mul(half_second, s2);
-        let c3 = b.mul(cubic, s3);
-        let mean = b.dot(&[value, c1, c2, c3], &[m0, m1, m2, m3]);
-        let second = b.add(half_second, half_second);
-        let d1 = b.mul(second, s);
-        let d2 = b.mul(cubic3, s2);
-        let slope = b.dot(&[first, d1, d2], &[m0, m1, m2]);
+        let cubic = p + q;
+        let square = p + cubic;
+        let cubic3 = cubic * 3.0;
+        let half_second = cubic3 * m - square;
+        let second = half_second + half_second;
+        let first = p + (half_second - square) * m;
+        let sixth = cubic * 6.0;
+
+        // E[c] and E[c′] over the segment.
+        let s2 = s.square();
+        let terms = [
+            self.bump.at(m),
+            first * s,
+            half_second * s2,
+            cubic * (s2 * s),
+        ];
+        let mean = dot(terms, [m0, m1, m2, m3]);
+        let slope = dot([first, second * s, cubic3 * s2], [m0, m1, m2]);
         // The ends bend by p and −q, and their bends by c″(0) = −2(2p + q) and −c″(1) = −2(p + 2q).
-        let sixth = b.scale(cubic, 6.0);
-        let e1 = b.mul(sixth, s);
-        let curvature = b.dot(&[second, e1], &[m0, m1]);
-        let ends = {
-            let (left, right) = (b.mul(p, fa), b.mul(q, fe));
-            b.sub(left, right)
-        };
-        let ends = b.mul(ends, inverse);
-        let curvature = b.add(curvature, ends);
-        let after = b.add(q, cubic);
-        let sum = b.dot(&[square, after], &[fa, fe]);
-        let sum = b.mul(sum, inverse);
-        let sum = b.scale(sum, -2.0);
-        let bulk = b.mul(sixth, m0);
-        let third = b.add(bulk, sum);
-        let inverse2 = b.square(inverse);
-        let (left, right) = (b.mul(p, afa), b.mul(q, efe));
-        let edge = b.sub(left, right);
-        let edge = b.mul(edge, inverse2);
-        let third = b.add(third, edge);
-        let distortion = b.f32(0.0);
-        Moments {
-            mean,
-            slope,
-            curvature,
-            third,
-            distortion,
-        }
+        let bends = (p * fa - q * fe) * inverse;
+        let curvature = second * m0 + sixth * s * m1 + bends;
+        let bends = (square * fa + (q + cubic) * fe) * inverse * -2.0;
+        let third = sixth * m0 + bends + (p * afa - q * efe) * inverse.square();
+        [mean, slope, curvature, third]
     }
 }
 
 /// By Gauss–Legendre: derivatives by m act on the density.
-fn quadrature(b: &mut Builder, bump: Bump, m: Value, inverse: Value) -> Moments {
-    let zero = b.f32(0.0);
-    let (mut mean, mut slope, mut curvature, mut third) = (zero, zero, zero, zero);
+fn quadrature<'b>(bump: Bump<'b>, m: Float<'b>, inverse: Float<'b>) -> [Float<'b>; 4] {
+    let mut sums = [m.literal(0.0); 4];
     for (node, weight) in NODES {
-        let at = b.f32(node);
-        let distance = b.sub(at, m);
-        let z = b.mul(distance, inverse);
-        let z = b.clamp(z, -12.0, 12.0);
-        let z2 = b.square(z);
-        let exponent = b.scale(z2, -0.5);
-        let density = b.exp(exponent);
-        let density = b.mul(density, inverse);
-        let height = bump.at(b, at);
-        let weighted = b.scale(density, 0.398_942_3 * weight);
-        let weighted = b.mul(weighted, height);
-        mean = b.add(mean, weighted);
-        let first = b.mul(z, weighted);
-        slope = b.add(slope, first);
-        let second = b.offset(z2, -1.0);
-        let second = b.mul(second, weighted);
-        curvature = b.add(curvature, second);
-        let cubic = b.offset(z2, -3.0);
-        let cubic = b.mul(cubic, first);
-        third = b.add(third, cubic);
+        let z = ((node - m) * inverse).clamp(-12.0, 12.0);
+        let z2 = z.square();
+        let density = (z2 * -0.5).exp() * inverse;
+        let zeroth = density * (0.398_942_3 * weight) * bump.at(m.literal(node));
+        let first = z * zeroth;
+        let terms = [zeroth, first, (z2 + -1.0) * zeroth, (z2 + -3.0) * first];
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum += term;
+        }
     }
-    let inverse2 = b.square(inverse);
-    let inverse3 = b.mul(inverse2, inverse);
-    Moments {
+    let inverse2 = inverse.square();
+    let [mean, slope, curvature, third] = sums;
+    [
         mean,
-        slope: b.mul(slope, inverse),
-        curvature: b.mul(curvature, inverse2),
-        third: b.mul(third, inverse3),
-        distortion: zero,
-    }
+        slope * inverse,
+        curvature * inverse2,
+        third * (inverse2 * inverse),
+    ]
 }
 
 /// The probability between two knots, from the tails of the nearer side.
-pub(in super::super) fn probability(b: &mut Builder, from: &Normal, to: &Normal) -> Value {
-    let by_above = b.sub(to.above, from.above);
-    let by_below = b.sub(from.below, to.below);
-    let sum = b.add(from.z, to.z);
-    let zero = b.f32(0.0);
-    let right = b.lt(zero, sum);
-    let p = b.select(right, by_above, by_below);
-    b.max(p, zero)
+pub(in super::super) fn probability<'b>(from: &Normal<'b>, to: &Normal<'b>) -> Float<'b> {
+    let right = (from.z + to.z).gt(0.0);
+    let p = right.select(to.above - from.above, from.below - to.below);
+    p.max(0.0)
 }

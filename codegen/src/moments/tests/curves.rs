@@ -1,15 +1,14 @@
 //! The exponential, and functions by their values alone.
 
-use super::super::{Curve, Exponential, Transfer};
-use super::{Case, DEVIATIONS, UNBOUNDED, grid, unit};
-use crate::ir::{Builder, Value};
+use super::super::{Curve, Exponential};
+use super::{Case, DEVIATIONS, Make, UNBOUNDED, grid, unit};
+use crate::ir::Float;
 
 #[test]
 fn the_exponential() {
-    let make = |_: &mut Builder| -> Box<dyn Transfer> { Box::new(Exponential) };
     Case {
         name: "exponential",
-        make: &make,
+        make: &|_| Box::new(Exponential),
         exact: &f64::exp,
         breaks: Vec::new(),
         points: grid(-2.0, 2.0, &DEVIATIONS[..11]),
@@ -21,26 +20,20 @@ fn the_exponential() {
 }
 
 /// x e^{−x²/4}, smooth everywhere.
-fn bell(b: &mut Builder, x: Value) -> Value {
-    let square = b.square(x);
-    let exponent = b.scale(square, -0.25);
-    let exponent = b.clamp(exponent, -80.0, 0.0);
-    let bell = b.exp(exponent);
-    b.mul(x, bell)
+fn bell(x: Float<'_>) -> Float<'_> {
+    x * (x.square() * -0.25).clamp(-80.0, 0.0).exp()
 }
 
 /// √ of x limited to [0, 1].
-fn root(b: &mut Builder, x: Value) -> Value {
-    let x = b.clamp(x, 0.0, 1.0);
-    b.sqrt(x)
+fn root(x: Float<'_>) -> Float<'_> {
+    x.clamp(0.0, 1.0).sqrt()
 }
 
 #[test]
 fn curves_with_and_without_kinks() {
-    let make = |_: &mut Builder| -> Box<dyn Transfer> { Box::new(Curve::smooth(bell, UNBOUNDED)) };
     Case {
         name: "smooth curve",
-        make: &make,
+        make: &|_| Box::new(Curve::smooth(bell, UNBOUNDED)),
         exact: &|x| x * (-0.25 * x * x).exp(),
         breaks: Vec::new(),
         points: grid(-2.0, 2.0, &DEVIATIONS[..9]),
@@ -49,8 +42,8 @@ fn curves_with_and_without_kinks() {
         size: &unit,
     }
     .check();
-    let make = |b: &mut Builder| -> Box<dyn Transfer> {
-        let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let make: Make<'_> = &|b| {
+        let [zero, one] = [0.0, 1.0].map(|x| b.float(x));
         Box::new(Curve {
             function: root,
             kinks: vec![zero, one],
@@ -60,7 +53,7 @@ fn curves_with_and_without_kinks() {
     };
     Case {
         name: "curve with kinks",
-        make: &make,
+        make,
         exact: &|x| x.clamp(0.0, 1.0).sqrt(),
         breaks: vec![0.0, 1.0],
         points: grid(-2.0, 2.0, &DEVIATIONS),

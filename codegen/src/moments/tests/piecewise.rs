@@ -14,9 +14,9 @@ const STOPS: [(f32, f32); 6] = [
     (0.9, 0.0),
 ];
 
-fn ramp(b: &mut Builder) -> Piecewise {
-    let stops: Vec<_> = STOPS.iter().map(|&(at, y)| (b.f32(at), b.f32(y))).collect();
-    Piecewise::ramp(b, &stops, Shape::Cubic)
+fn ramp(b: &Builder) -> Piecewise<'_> {
+    let stops = STOPS.map(|(at, y)| (b.float(at), b.float(y)));
+    Piecewise::ramp(&stops, Shape::Cubic)
 }
 
 /// Steffen's interpolant of the stops, with slope 0 at both ends.
@@ -54,10 +54,9 @@ fn steffen(x: f64) -> f64 {
 
 #[test]
 fn cubic_ramps() {
-    let make = |b: &mut Builder| -> Box<dyn Transfer> { Box::new(ramp(b)) };
     Case {
         name: "cubic",
-        make: &make,
+        make: &|b| Box::new(ramp(b)),
         exact: &steffen,
         breaks: STOPS.map(|stop| f64::from(stop.0)).to_vec(),
         points: grid(-2.0, 3.0, &DEVIATIONS),
@@ -66,8 +65,8 @@ fn cubic_ramps() {
         size: &unit,
     }
     .check();
-    let mut b = Builder::new("range", "The range of a ramp.");
-    let [low, high] = ramp(&mut b).range(&b, UNBOUNDED);
+    let b = &Builder::new("range", "The range of a ramp.");
+    let [low, high] = ramp(b).range(UNBOUNDED);
     assert!(
         low > -1e-5 && low <= 0.0 && (0.9..0.90001).contains(&high),
         "{low} {high}"
@@ -76,17 +75,15 @@ fn cubic_ramps() {
 
 #[test]
 fn a_rounded_corner() {
-    let rounded = |b: &mut Builder| {
-        let width = b.f32(0.5);
-        Piecewise::rounded(b, width)
-    };
-    let make = |b: &mut Builder| -> Box<dyn Transfer> { Box::new(rounded(b)) };
+    fn rounded(b: &Builder) -> Piecewise<'_> {
+        Piecewise::rounded(b.float(0.5))
+    }
     let exact = |x: f64| {
         if x.abs() < 0.5 { x * x + 0.25 } else { x.abs() }
     };
     Case {
         name: "rounded",
-        make: &make,
+        make: &|b| Box::new(rounded(b)),
         exact: &exact,
         breaks: vec![-0.5, 0.5],
         points: grid(-2.0, 3.0, &DEVIATIONS),
@@ -95,8 +92,8 @@ fn a_rounded_corner() {
         size: &|m: f64, sd: f64| 0.5 + m.abs() + sd,
     }
     .check();
-    let mut b = Builder::new("range", "The range of a rounded corner.");
-    let [low, high] = rounded(&mut b).range(&b, [-2.0, 1.0]);
+    let b = &Builder::new("range", "The range of a rounded corner.");
+    let [low, high] = rounded(b).range([-2.0, 1.0]);
     assert!(
         (low - 0.25).abs() < 1e-5 && (high - 2.0).abs() < 1e-5,
         "{low} {high}"
@@ -105,24 +102,16 @@ fn a_rounded_corner() {
 
 #[test]
 fn the_range_of_a_bump_that_overshoots() {
-    let mut b = Builder::new("range", "The range of a bump.");
-    let (zero, four) = (b.f32(0.0), b.f32(4.0));
-    let knots = [0.0, 1.0].map(|at| Knot {
-        at: b.f32(at),
-        jump: zero,
-        bend: zero,
-    });
-    let minus = b.neg(four);
+    let b = &Builder::new("range", "The range of a bump.");
+    let knots = [0.0, 1.0].map(|at| Knot::bend(b.float(at), 0.0));
     let parabola = Piecewise {
-        offset: zero,
-        slope: zero,
-        knots: knots.to_vec(),
         bumps: vec![Bump {
-            start: four,
-            end: minus,
+            start: b.float(4.0),
+            end: b.float(-4.0),
         }],
+        ..Piecewise::straight(b.float(0.0), 0.0, knots.to_vec())
     };
-    let [low, high] = parabola.range(&b, UNBOUNDED);
+    let [low, high] = parabola.range(UNBOUNDED);
     assert!(
         low.abs() < 1e-5 && (high - 1.0).abs() < 1e-5,
         "{low} {high}"

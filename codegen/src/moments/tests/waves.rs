@@ -1,9 +1,8 @@
 //! Sawtooth, triangle, the hexagon of hues, whole parts.
 
 use super::super::wave::Staircase;
-use super::super::{Corner, LinearWave, Transfer};
+use super::super::{Corner, LinearWave};
 use super::{Case, DEVIATIONS, Make, evaluate, grid, module, unit};
-use crate::ir::Builder;
 
 type Function = fn(f64) -> f64;
 
@@ -51,11 +50,10 @@ fn waves() -> [(&'static str, LinearWave, Function, Vec<f64>); 4] {
 #[test]
 fn linear_waves() {
     for (name, wave, exact, corners) in waves() {
-        let make = |_: &mut Builder| -> Box<dyn Transfer> { Box::new(wave.clone()) };
         let breaks = (-60..=60).flat_map(|i| corners.iter().map(move |at| f64::from(i) + at));
         Case {
             name,
-            make: &make,
+            make: &|_| Box::new(wave.clone()),
             exact: &exact,
             breaks: breaks.collect(),
             points: grid(-1.03, 1.51, &DEVIATIONS[..13]),
@@ -69,10 +67,9 @@ fn linear_waves() {
 
 #[test]
 fn whole_parts() {
-    let make = |_: &mut Builder| -> Box<dyn Transfer> { Box::new(Staircase::default()) };
     Case {
         name: "floor",
-        make: &make,
+        make: &|_| Box::new(Staircase::default()),
         exact: &f64::floor,
         breaks: (-60..=60).map(f64::from).collect(),
         points: grid(-1.03, 1.51, &DEVIATIONS[..13]),

@@ -2,7 +2,7 @@
 
 use super::super::{Algebra, Gaussian, Moments, Signal, Transfer, position};
 use super::LinearWave;
-use crate::ir::{Builder, Value};
+use crate::ir::Float;
 
 /// ⌊x⌋: the moments of x less those of its fraction; the distortion is the fraction's, since
 /// ⌊x⌋ − (1 − α)x = −({x} − αx). Exact for a Gaussian.
@@ -15,40 +15,37 @@ impl Default for Staircase {
     }
 }
 
-impl Transfer for Staircase {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        b.floor(x)
+impl<'b> Transfer<'b> for Staircase {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
+        x.floor()
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let fraction = self.0.moments(b, x);
-        let one = b.f32(1.0);
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let fraction = self.0.moments(x);
         Moments {
-            mean: b.sub(x.mean, fraction.mean),
-            slope: b.sub(one, fraction.slope),
-            curvature: b.neg(fraction.curvature),
-            third: b.neg(fraction.third),
+            mean: x.mean - fraction.mean,
+            slope: 1.0 - fraction.slope,
+            curvature: -fraction.curvature,
+            third: -fraction.third,
             distortion: fraction.distortion,
         }
     }
 
-    fn range(&self, _: &Builder, input: [f32; 2]) -> [f32; 2] {
+    fn range(&self, input: [f32; 2]) -> [f32; 2] {
         input.map(f32::floor)
     }
 }
 
-impl Algebra {
+impl<'b> Algebra<'b> {
     /// ⌊X⌋, the integer cell of a position being whole already.
-    pub fn floor(&mut self, x: &Signal) -> Signal {
+    pub fn floor(&mut self, x: &Signal<'b>) -> Signal<'b> {
         let within = Signal {
             cell: None,
             ..x.clone()
         };
         let mut out = self.transfer(&within, &Staircase::default());
         if x.cell.is_some() {
-            let b = &mut self.b;
-            let zero = b.f32(0.0);
-            (out.cell, out.mean) = position::add(b, (x.cell, zero), (None, out.mean));
+            (out.cell, out.mean) = position::add((x.cell, self.b.float(0.0)), (None, out.mean));
             out.range = x.range.map(f32::floor);
         }
         out

@@ -2,7 +2,7 @@
 
 use super::super::{Gaussian, Knot, Moments, Piecewise, Transfer, signal::UNBOUNDED};
 use super::{CROSSOVER, fraction};
-use crate::ir::{Builder, Value};
+use crate::ir::{Builder, Float};
 use std::f64::consts::TAU;
 
 /// A knot of a [`LinearWave`].
@@ -103,72 +103,56 @@ impl LinearWave {
     }
 
     /// The function on an interval of the corners strictly between `from` and `to`.
-    fn unrolled(&self, b: &mut Builder, from: f32, to: f32) -> Piecewise {
+    fn unrolled<'b>(&self, b: &'b Builder, from: f32, to: f32) -> Piecewise<'b> {
         let count = self.corners.len() as isize;
-        let reach = -2 * count..3 * count;
-        let within = |i: &isize| self.corner(*i).at > from && self.corner(*i).at < to;
-        let inside: Vec<isize> = reach.filter(within).collect();
         // The line before the first corner inside.
         let last = (-3 * count..3 * count)
             .rfind(|&i| self.corner(i).at <= from)
             .unwrap_or(-3 * count);
         let (start, slope) = (self.corner(last), self.slope(last));
-        let knots = inside.into_iter().map(|i| {
+        let knots = (-2 * count..3 * count).filter_map(|i| {
             let corner = self.corner(i);
-            Knot {
-                at: b.f32(corner.at),
-                jump: b.f32(corner.after - corner.before),
-                bend: b.f32(self.slope(i) - self.slope(i - 1)),
-            }
+            (corner.at > from && corner.at < to).then(|| Knot {
+                at: b.float(corner.at),
+                jump: b.float(corner.after - corner.before),
+                bend: b.float(self.slope(i) - self.slope(i - 1)),
+            })
         });
-        let knots = knots.collect();
-        Piecewise {
-            offset: b.f32(start.after - slope * start.at),
-            slope: b.f32(slope),
-            knots,
-            bumps: Vec::new(),
-        }
+        let offset = b.float(start.after - slope * start.at);
+        Piecewise::straight(offset, slope, knots.collect())
     }
 
-    /// The damped harmonics: [mean, slope, curvature, third] of the function, and the mean of its
+    /// The damped harmonics: mean, slope, curvature and third of the function, and the mean of its
     /// square.
-    fn harmonics(&self, b: &mut Builder, u: Value, variance: Value) -> ([Value; 4], Value) {
-        let limit = b.f32(4.0);
-        let v = b.min(variance, limit);
-        let angle = b.scale(u, TAU as f32);
-        let (cosine, sine) = (b.cos(angle), b.sin(angle));
-        let mut turned = (cosine, sine);
+    fn harmonics<'b>(&self, u: Float<'b>, variance: Float<'b>) -> [Float<'b>; 5] {
+        let v = variance.min(4.0);
+        let angle = u * TAU as f32;
+        let (cosine, sine) = (angle.cos(), angle.sin());
+        let mut turned = [cosine, sine];
         let [of, squared] = self.series;
-        let zero = b.f32(0.0);
-        let mut out = [b.f32(of.mean as f32), zero, zero, zero];
-        let mut square = b.f32(squared.mean as f32);
+        let mut sums = [of.mean, 0.0, 0.0, 0.0, squared.mean].map(|x| u.literal(x as f32));
         for k in 0..HARMONICS {
-            let w = TAU * (k + 1) as f64;
             if k > 0 {
-                let (c, s) = turned;
-                let (cc, ss) = (b.mul(c, cosine), b.mul(s, sine));
-                let (sc, cs) = (b.mul(s, cosine), b.mul(c, sine));
-                turned = (b.sub(cc, ss), b.add(sc, cs));
+                let [c, s] = turned;
+                turned = [c * cosine - s * sine, s * cosine + c * sine];
             }
-            let exponent = b.scale(v, (-0.5 * w * w) as f32);
-            let exponent = b.clamp(exponent, -80.0, 0.0);
-            let damping = b.exp(exponent);
-            let (c, s) = (b.mul(turned.0, damping), b.mul(turned.1, damping));
-            // a cos + b sin, and its derivatives.
+            let w = TAU * (k + 1) as f64;
+            let damping = (v * (-0.5 * w * w) as f32).clamp(-80.0, 0.0).exp();
+            let [c, s] = turned.map(|turned| turned * damping);
+            // p cos + q sin, its derivatives, and the same of the square.
             let (p, q) = of.harmonics[k];
-            let rows = [(p, q), (q * w, -p * w), (-p * w * w, -q * w * w)];
-            let third = (-q * w * w * w, p * w * w * w);
-            for (sum, (p, q)) in out.iter_mut().zip(rows.into_iter().chain([third])) {
-                let (left, right) = (b.scale(c, p as f32), b.scale(s, q as f32));
-                let part = b.add(left, right);
-                *sum = b.add(*sum, part);
+            let rows = [
+                (p, q),
+                (q * w, -p * w),
+                (-p * w * w, -q * w * w),
+                (-q * w * w * w, p * w * w * w),
+                squared.harmonics[k],
+            ];
+            for (sum, (p, q)) in sums.iter_mut().zip(rows) {
+                *sum += c * p as f32 + s * q as f32;
             }
-            let (p, q) = squared.harmonics[k];
-            let (left, right) = (b.scale(c, p as f32), b.scale(s, q as f32));
-            let part = b.add(left, right);
-            square = b.add(square, part);
         }
-        (out, square)
+        sums
     }
 }
 
@@ -201,45 +185,35 @@ impl Series {
     }
 }
 
-impl Transfer for LinearWave {
-    fn value(&self, b: &mut Builder, x: Value) -> Value {
-        let u = fraction(b, x);
+impl<'b> Transfer<'b> for LinearWave {
+    fn value(&self, x: Float<'b>) -> Float<'b> {
         // A corner at 0 is where the line starts.
-        let piece = self.unrolled(b, 0.0, 1.0);
-        piece.value(b, u)
+        let piece = self.unrolled(x.builder(), 0.0, 1.0);
+        piece.value(fraction(x))
     }
 
-    fn moments(&self, b: &mut Builder, x: &Gaussian) -> Moments {
-        let u = fraction(b, x.mean);
-        let narrow = self.unrolled(b, -1.0, 2.0);
-        let near = Gaussian {
+    fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let u = fraction(x.mean);
+        let near = self.unrolled(u.builder(), -1.0, 2.0).moments(&Gaussian {
             mean: u,
             range: UNBOUNDED,
             ..*x
-        };
-        let narrow = narrow.moments(b, &near);
-        let (wide, square) = self.harmonics(b, u, x.variance);
-        let crossover = b.f32(CROSSOVER);
-        let is_narrow = b.lt(x.sd, crossover);
+        });
+        let [mean, slope, curvature, third, square] = self.harmonics(u, x.variance);
         // Here the squares are far apart: nothing cancels.
-        let linear = b.mul(wide[1], x.sd);
-        let (explained, middle) = (b.square(linear), b.square(wide[0]));
-        let distortion = b.sub(square, middle);
-        let distortion = b.sub(distortion, explained);
-        let zero = b.f32(0.0);
-        let distortion = b.max(distortion, zero);
-        let mean = b.select(is_narrow, narrow.mean, wide[0]);
-        let [low, high] = self.range(b, UNBOUNDED);
+        let distortion = (square - mean.square() - (slope * x.sd).square()).max(0.0);
+        let narrow = x.sd.lt(CROSSOVER);
+        let [low, high] = self.range(UNBOUNDED);
         Moments {
-            mean: b.clamp(mean, low, high),
-            slope: b.select(is_narrow, narrow.slope, wide[1]),
-            curvature: b.select(is_narrow, narrow.curvature, wide[2]),
-            third: b.select(is_narrow, narrow.third, wide[3]),
-            distortion: b.select(is_narrow, narrow.distortion, distortion),
+            mean: narrow.select(near.mean, mean).clamp(low, high),
+            slope: narrow.select(near.slope, slope),
+            curvature: narrow.select(near.curvature, curvature),
+            third: narrow.select(near.third, third),
+            distortion: narrow.select(near.distortion, distortion),
         }
     }
 
-    fn range(&self, _: &Builder, _: [f32; 2]) -> [f32; 2] {
+    fn range(&self, _: [f32; 2]) -> [f32; 2] {
         let values = (self.corners.iter()).flat_map(|corner| [corner.before, corner.after]);
         values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], y| {
             [low.min(y), high.max(y)]

@@ -1,7 +1,7 @@
 //! Maps that are shapes: bands, rings, Voronoi regions, coloured by stops.
 
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Module, Type as Scalar, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Vec2};
 use mipless_codegen::moments::{self, Piecewise, Transfer};
 use mipless_graph::{Node, Stops};
 
@@ -24,7 +24,7 @@ enum Kind {
 
 impl Shape {
     /// The shape that the ports describe.
-    pub(super) fn of(lower: &Lower<'_>, node: &Node) -> Self {
+    pub(super) fn of(lower: &Lower<'_, '_>, node: &Node) -> Self {
         Self {
             kind: match lower.choice(node, "shape") {
                 "bands" => Kind::Bands(lower.float(node, "rotate").to_radians()),
@@ -58,86 +58,73 @@ impl Shape {
     }
 
     /// The channels at a place of the unit square.
-    pub(super) fn at(
+    pub(super) fn at<'b>(
         &self,
-        b: &mut Builder,
+        b: &'b Builder,
         module: &mut Module,
-        p: [Value; 2],
+        [x, y]: [Float<'b>; 2],
         periodic: bool,
-    ) -> Vec<Value> {
+    ) -> Vec<Float<'b>> {
         let t = match self.kind {
             Kind::Bands(angle) => {
                 let (sine, cosine) = angle.sin_cos();
-                let (cosine, sine) = (b.f32(cosine), b.f32(sine));
-                let across = b.dot(&p, &[cosine, sine]);
-                self.repeated(b, across)
+                self.repeated(x * cosine + y * sine)
             }
-            Kind::Rings(center) => {
-                let from = [0, 1].map(|i| b.offset(p[i], -center[i]));
-                let square = b.dot(&from, &from);
-                let distance = b.sqrt(square);
-                let distance = b.scale(distance, 2.0);
-                self.repeated(b, distance)
+            Kind::Rings([cx, cy]) => {
+                let from = Vec2([x + -cx, y + -cy]);
+                self.repeated(from.norm2().sqrt() * 2.0)
             }
-            Kind::Regions => self.nearest(b, module, p, periodic),
+            Kind::Regions => self.nearest(b, module, [x, y], periodic),
         };
-        (0..self.stops.ty.components())
-            .map(|i| {
-                let stops: Vec<_> = (self.stops.stops.iter())
-                    .map(|stop| (b.f32(stop.at), b.f32(stop.value[i])))
-                    .collect();
-                Piecewise::ramp(b, &stops, self.interpolation).value(b, t)
-            })
-            .collect()
+        let channel = |i: usize| {
+            let stops: Vec<_> = (self.stops.stops.iter())
+                .map(|stop| (b.float(stop.at), b.float(stop.value[i])))
+                .collect();
+            Piecewise::ramp(&stops, self.interpolation).value(t)
+        };
+        (0..self.stops.ty.components()).map(channel).collect()
     }
 
-    fn repeated(&self, b: &mut Builder, x: Value) -> Value {
-        let x = b.scale(x, self.count as f32);
-        let whole = b.floor(x);
-        b.sub(x, whole)
+    fn repeated<'b>(&self, x: Float<'b>) -> Float<'b> {
+        let x = x * self.count as f32;
+        x - x.floor()
     }
 
     /// The stops' place of the site that is nearest to p; in a periodic map, through its edges.
-    fn nearest(
+    fn nearest<'b>(
         &self,
-        b: &mut Builder,
+        b: &'b Builder,
         module: &mut Module,
-        p: [Value; 2],
+        p: [Float<'b>; 2],
         periodic: bool,
-    ) -> Value {
+    ) -> Float<'b> {
         let sites: Vec<f32> = (0..self.count).flat_map(|i| self.site(i)).collect();
         let table = module.table("sites", sites);
-        let mut turn = Builder::new("nearer", "One more site of a Voronoi diagram.");
-        let index = turn.param("index", Scalar::U32);
-        let (least, best) = (turn.param_f32("least"), turn.param_f32("best"));
-        let p_of = ["x", "y"].map(|name| turn.param_f32(name));
-        let two = turn.u32(2);
-        let first = turn.mul_u(index, two);
-        let one = turn.u32(1);
-        let second = turn.add_u(first, one);
-        let from = [(p_of[0], first), (p_of[1], second)].map(|(p, at)| {
-            let site = turn.load(table, at);
-            let from = turn.sub(p, site);
+        let nearer = self.nearer(module, table, periodic);
+        let (far, none) = (b.float(1e9), b.float(0.0));
+        let [_, best] = b.fold(&nearer, b.uint(self.count), [far, none], p);
+        best
+    }
+
+    /// The body of a fold over the sites: the least squared distance, and the stops' place there.
+    fn nearer(&self, module: &mut Module, table: u32, periodic: bool) -> FunctionRef {
+        let b = &Builder::new("nearer", "One more site of a Voronoi diagram.");
+        let index = b.uint_param("index");
+        let [least, best, x, y] = ["least", "best", "x", "y"].map(|name| b.float_param(name));
+        let first = index * 2;
+        let from = [(x, first), (y, first + 1)].map(|(p, at)| {
+            let from = p - b.load(table, at);
             if periodic {
-                let shifted = turn.offset(from, 0.5);
-                let whole = turn.floor(shifted);
-                turn.sub(from, whole)
+                from - (from + 0.5).floor()
             } else {
                 from
             }
         });
-        let distance = turn.dot(&from, &from);
-        let nearer = turn.lt(distance, least);
-        let least = turn.min(distance, least);
-        let number = turn.float_u(index);
-        let number = turn.offset(number, 0.5);
-        let number = turn.scale(number, 1.0 / self.count as f32);
-        let best = turn.select(nearer, number, best);
-        turn.result("least", least);
-        turn.result("best", best);
-        let turn = turn.finish(module);
-        let (count, far, none) = (b.u32(self.count), b.f32(1e9), b.f32(0.0));
-        b.fold(&turn, count, &[far, none], &p)[1]
+        let distance = Vec2(from).norm2();
+        let place = (index.to_float() + 0.5) * (1.0 / self.count as f32);
+        b.result("least", distance.min(least));
+        b.result("best", distance.lt(least).select(place, best));
+        b.finish(module)
     }
 
     /// The place of site i in the map.

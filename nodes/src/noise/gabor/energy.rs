@@ -1,7 +1,7 @@
 //! The energy of the filtered Gabor noise and its derivatives by the footprint.
 
-use super::Gabor;
-use mipless_codegen::ir::{Builder, Value};
+use super::{Gabor, congruent, form};
+use mipless_codegen::ir::{Float, Sym2, Vec2, dot};
 use std::f32::consts::PI;
 
 /// Directions with weights, as angles from the orientation: one for a single direction, the
@@ -32,83 +32,49 @@ fn directions(anisotropy: f32) -> Vec<[f32; 2]> {
 ///
 /// With Y = ΣP (eigenvalues y/(1 + y), y = s/α²): ∂_λ ln of a direction's term is
 /// −α⁴ wᵀPΣPw − ½ tr Y, and ∂²_λ of it is 2α⁴ wᵀPΣPΣPw + ½ tr Y².
-pub(super) fn energies(
-    b: &mut Builder,
+pub(super) fn energies<'b>(
     gabor: Gabor,
-    orientation: [Value; 2],
-    c: [Value; 3],
-    p: [Value; 3],
-    spread: Value,
-) -> ([Value; 3], [Value; 3]) {
+    orientation: Vec2<'b>,
+    c: Sym2<'b>,
+    p: Sym2<'b>,
+    spread: Float<'b>,
+) -> ([Float<'b>; 3], Sym2<'b>) {
     let area = gabor.alpha().powi(2);
-    // Y = C/α² is symmetric, for Σ and P commute; α²PY and α²PY² likewise.
-    let y = c.map(|c| b.scale(c, 1.0 / area));
-    let multiply = |b: &mut Builder, m: [Value; 3], n: [Value; 3]| {
-        [
-            b.dot(&[m[0], m[1]], &[n[0], n[1]]),
-            b.dot(&[m[0], m[1]], &[n[1], n[2]]),
-            b.dot(&[m[1], m[2]], &[n[1], n[2]]),
-        ]
-    };
-    let first = multiply(b, p, y);
-    let second = multiply(b, first, y);
-    let trace = b.add(y[0], y[2]);
-    let cross = b.square(y[1]);
-    let cross = b.add(cross, cross);
-    let squares = b.dot(&[y[0], y[2]], &[y[0], y[2]]);
-    let trace2 = b.add(squares, cross);
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
     let turn = gabor.turn() * gabor.turn();
-    let mut sums = [zero; 3];
-    let mut waves = [zero; 3];
+    // Y = C/α² is symmetric, for Σ and P commute; α²PY and α²PY² likewise.
+    let y = c * (1.0 / area);
+    let first = product(p, y);
+    let second = product(first, y);
+    let trace = y[0] + y[2];
+    let cross = y[1].square();
+    let trace_of_square = dot([y[0], y[2]], [y[0], y[2]]) + (cross + cross);
+
+    let zero = spread.literal(0.0);
+    let [mut f, mut v1, mut v2] = [zero; 3];
+    let mut waves = Sym2::splat(zero);
     for [angle, weight] in directions(gabor.anisotropy) {
         let (sin, cos) = angle.sin_cos();
-        let (x, y) = (b.scale(orientation[0], cos), b.scale(orientation[1], sin));
-        let wx = b.sub(x, y);
-        let (x, y) = (b.scale(orientation[0], sin), b.scale(orientation[1], cos));
-        let wy = b.add(x, y);
-        let (xx, yx, yy) = (b.square(wx), b.mul(wx, wy), b.square(wy));
-        let xy = b.add(yx, yx);
-        let form = |b: &mut Builder, m: [Value; 3], factor: f32| {
-            let form = b.dot(&[xx, xy, yy], &m);
-            b.scale(form, factor)
-        };
-        let exponent = form(b, c, -turn);
-        let least = b.f32(-80.0);
-        let exponent = b.max(exponent, least);
-        let energy = b.exp(exponent);
-        let energy = b.scale(energy, weight);
-        let half = b.scale(trace, 0.5);
-        let l1 = form(b, first, area * area * turn);
-        let l1 = b.add(l1, half);
-        let l2 = form(b, second, 2.0 * area * area * turn);
-        let half = b.scale(trace2, 0.5);
-        let l2 = b.add(l2, half);
-        let bend = b.square(l1);
-        let bend = b.add(bend, l2);
-        for (wave, square) in waves.iter_mut().zip([xx, yx, yy]) {
-            let part = b.mul(energy, square);
-            *wave = b.add(*wave, part);
-        }
-        let parts = [one, l1, bend];
-        for (sum, part) in sums.iter_mut().zip(parts) {
-            let part = b.mul(energy, part);
-            *sum = b.add(*sum, part);
-        }
+        let [x, y] = *orientation;
+        let w = Vec2([x * cos - y * sin, x * sin + y * cos]);
+        let energy = (form(w, c) * -turn).max(-80.0).exp() * weight;
+        let l1 = form(w, first) * (area * area * turn) + trace * 0.5;
+        let l2 = form(w, second) * (2.0 * area * area * turn) + trace_of_square * 0.5;
+        f += energy;
+        v1 += energy * l1;
+        v2 += energy * (l1.square() + l2);
+        waves = waves + w.outer() * energy;
     }
-    let [f, v1, v2] = sums.map(|sum| b.mul(sum, spread));
+    let [f, v1, v2] = [f, v1, v2].map(|sum| sum * spread);
     // E[∇M ∇Mᵀ] = ½F P + α⁴ P E[F w wᵀ] P.
-    let factor = b.scale(spread, area * area * turn);
-    let inner = waves.map(|wave| b.mul(wave, factor));
-    let rows = [[p[0], p[1]], [p[1], p[2]]];
-    let mut slopes = [zero; 3];
-    for (slope, (i, j)) in slopes.iter_mut().zip([(0, 0), (0, 1), (1, 1)]) {
-        let left = b.dot(&[inner[0], inner[1]], &rows[j]);
-        let right = b.dot(&[inner[1], inner[2]], &rows[j]);
-        let own = b.mul(f, rows[i][j]);
-        let own = b.scale(own, 0.5);
-        let bent = b.dot(&rows[i], &[left, right]);
-        *slope = b.add(own, bent);
-    }
-    ([f, v1, b.scale(v2, 0.5)], slopes)
+    let bent = congruent(p, waves * (spread * (area * area * turn)));
+    ([f, v1, v2 * 0.5], p * f * 0.5 + bent)
+}
+
+/// The product of two matrices that commute.
+fn product<'b>(m: Sym2<'b>, n: Sym2<'b>) -> Sym2<'b> {
+    Sym2([
+        dot([m[0], m[1]], [n[0], n[1]]),
+        dot([m[0], m[1]], [n[1], n[2]]),
+        dot([m[1], m[2]], [n[1], n[2]]),
+    ])
 }

@@ -2,132 +2,124 @@
 //! the lattice tiles.
 
 use crate::noise::hash::{key, steps, walked};
-use crate::noise::octave::Octave;
+use crate::noise::sum::Octave;
 use crate::noise::tile::wrapped;
-use mipless_codegen::ir::{Builder, Type, Value};
+use mipless_codegen::ir::{Bool, Builder, Float, Scalar, Scalars, Uint};
 
 /// The lattice around a position, seen along rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Address {
-    key: Value,
+pub(super) struct Address<'b> {
+    key: Uint<'b>,
     /// What a step along x and y adds to the key.
-    steps: [Value; 2],
-    tile: Option<Tile>,
+    steps: [Uint<'b>; 2],
+    tile: Option<Tile<'b>>,
 }
 
 /// A lattice that repeats: the key is then the seed's.
 #[derive(Clone, Copy, Debug)]
-struct Tile {
+struct Tile<'b> {
     /// The cell of the position in the period, as reals.
-    origin: [Value; 2],
-    period: Value,
+    origin: [Float<'b>; 2],
+    period: Float<'b>,
 }
 
-impl Address {
-    /// The lattice around a position in these cells (i32), with a period (a real) if it tiles.
-    pub(super) fn new(
-        b: &mut Builder,
-        cells: [Value; 2],
-        seed: Value,
-        period: Option<Value>,
-    ) -> Self {
-        let steps = steps(b);
-        let tile = period.map(|period| Tile {
-            origin: cells.map(|cell| b.float_i(cell)),
-            period,
-        });
-        let key = match tile {
-            Some(_) => seed,
-            None => key(b, cells, seed),
-        };
-        Self { key, steps, tile }
-    }
-
+impl<'b> Address<'b> {
     /// With x and y exchanged where `swapped`.
-    pub(super) fn swapped(mut self, b: &mut Builder, swapped: Value) -> Self {
-        let mut turn = |[x, y]: [Value; 2]| [b.select(swapped, y, x), b.select(swapped, x, y)];
-        self.steps = turn(self.steps);
-        if let Some(tile) = &mut self.tile {
-            tile.origin = turn(tile.origin);
+    pub(super) fn swapped(self, swapped: Bool<'b>) -> Self {
+        let [step_x, step_y] = self.steps;
+        Self {
+            steps: [
+                swapped.select(step_y, step_x),
+                swapped.select(step_x, step_y),
+            ],
+            tile: self.tile.map(|tile| Tile {
+                origin: exchanged(swapped, tile.origin),
+                ..tile
+            }),
+            ..self
         }
-        self
     }
 
     /// With rows counted from `row` (a real, relative to the cell).
-    pub(super) fn rows_counted_from(mut self, b: &mut Builder, row: Value) -> Self {
+    pub(super) fn rows_counted_from(mut self, row: Float<'b>) -> Self {
         match &mut self.tile {
-            Some(tile) => tile.origin[1] = b.add(tile.origin[1], row),
-            None => {
-                let row = b.trunc_i(row);
-                self.key = walked(b, self.key, row, self.steps[1]);
-            }
+            Some(tile) => tile.origin[1] += row,
+            None => self.key = walked(self.key, row.to_int(), self.steps[1]),
         }
         self
     }
 
-    /// The parameters of a function that take it over, in the order of [`Address::captures`].
-    pub(super) fn declare(b: &mut Builder, tiles: bool) -> Self {
+    /// The parameters of a function that takes it over.
+    pub(super) fn declare(b: &'b Builder, tiles: bool) -> Self {
         Self {
-            key: b.param("key", Type::U32),
-            steps: [b.param("step_x", Type::U32), b.param("step_y", Type::U32)],
+            key: b.uint_param("key"),
+            steps: ["step_x", "step_y"].map(|name| b.uint_param(name)),
             tile: tiles.then(|| Tile {
-                origin: [b.param_f32("origin_x"), b.param_f32("origin_y")],
-                period: b.param_f32("period"),
+                origin: ["origin_x", "origin_y"].map(|name| b.float_param(name)),
+                period: b.float_param("period"),
             }),
         }
     }
 
-    pub(super) fn captures(&self) -> Vec<Value> {
-        let mut all = vec![self.key];
-        all.extend(self.steps);
-        if let Some(tile) = self.tile {
-            all.extend(tile.origin);
-            all.push(tile.period);
-        }
-        all
-    }
-
-    /// The keys of `count` lattice points of row `index` (a u32), from the column `start` (a real,
-    /// relative to the cell) on.
-    pub(super) fn keys(
-        &self,
-        b: &mut Builder,
-        index: Value,
-        start: Value,
-        count: usize,
-    ) -> Vec<Value> {
+    /// The keys of `count` lattice points of row `index`, from the column `start` (a real, relative to
+    /// the cell) on.
+    pub(super) fn keys(&self, index: Uint<'b>, start: Float<'b>, count: usize) -> Vec<Uint<'b>> {
+        let [step_x, step_y] = self.steps;
         match self.tile {
             Some(Tile { origin, period }) => {
-                let row = b.float_u(index);
-                let row = b.add(origin[1], row);
-                let row = wrapped(b, row, period);
-                let row = b.trunc_i(row);
-                let key = walked(b, self.key, row, self.steps[1]);
-                let start = b.add(origin[0], start);
-                let keys = (0..count).map(|i| {
-                    let column = b.offset(start, i as f32);
-                    let column = wrapped(b, column, period);
-                    let column = b.trunc_i(column);
-                    walked(b, key, column, self.steps[0])
-                });
-                keys.collect()
+                let row = wrapped(origin[1] + index.to_float(), period);
+                let key = walked(self.key, row.to_int(), step_y);
+                let start = origin[0] + start;
+                (0..count)
+                    .map(|i| {
+                        let column = wrapped(start + i as f32, period);
+                        walked(key, column.to_int(), step_x)
+                    })
+                    .collect()
             }
             None => {
-                let rows = b.mul_u(index, self.steps[1]);
-                let key = b.add_u(self.key, rows);
-                let start = b.trunc_i(start);
-                let mut keys = vec![walked(b, key, start, self.steps[0])];
-                for _ in 1..count {
-                    keys.push(b.add_u(keys[keys.len() - 1], self.steps[0]));
-                }
-                keys
+                let first = walked(self.key + index * step_y, start.to_int(), step_x);
+                std::iter::successors(Some(first), |&key| Some(key + step_x))
+                    .take(count)
+                    .collect()
             }
         }
     }
 }
 
-impl Octave<2> {
-    pub(super) fn address(&self, b: &mut Builder) -> Address {
-        Address::new(b, self.cells, self.seed, self.period)
+/// x and y exchanged where `swapped`.
+pub(super) fn exchanged<'b>(swapped: Bool<'b>, [x, y]: [Float<'b>; 2]) -> [Float<'b>; 2] {
+    [swapped.select(y, x), swapped.select(x, y)]
+}
+
+impl<'b> Scalars<'b> for Address<'b> {
+    fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
+        let tile = self.tile.map(|tile| (tile.origin, tile.period));
+        (self.key, self.steps, tile).each(visit);
+    }
+
+    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
+        let tile = self.tile.map(|tile| (tile.origin, tile.period));
+        let (key, steps, tile) = (self.key, self.steps, tile).replaced(next);
+        Self {
+            key,
+            steps,
+            tile: tile.map(|(origin, period)| Tile { origin, period }),
+        }
+    }
+}
+
+impl<'b> Octave<'b, 2> {
+    /// The lattice around the position.
+    pub(super) fn address(&self) -> Address<'b> {
+        let tile = self.period.map(|period| Tile {
+            origin: self.cells.map(|cell| cell.to_float()),
+            period,
+        });
+        Address {
+            key: tile.map_or_else(|| key(self.cells, self.seed), |_| self.seed),
+            steps: steps(self.seed.builder()),
+            tile,
+        }
     }
 }

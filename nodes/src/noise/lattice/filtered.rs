@@ -1,11 +1,13 @@
 //! One octave of the filtered noise.
 
+use super::address::exchanged;
 use super::energy::Energy;
 use super::row::{Frame, orders, row};
 use super::width::WIDTH;
-use crate::noise::octave::Octave;
+use crate::noise::remainder::share;
+use crate::noise::sum::Octave;
 use crate::noise::sum::{Octaves, derivatives};
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module};
 use mipless_codegen::moments::Mode;
 
 /// An octave that keeps less than the first share of the variance of the whole noise has faded to
@@ -30,189 +32,118 @@ const REACH: f32 = 2.3;
 /// The most lattice rows that are summed; footprints that need more fade.
 const MOST_ROWS: f32 = 32.0;
 
-/// 0 below `low`, 1 above `high`, linear between.
-fn ramp(b: &mut Builder, x: Value, [low, high]: [f32; 2]) -> Value {
-    let x = b.offset(x, -low);
-    let x = b.scale(x, 1.0 / (high - low));
-    b.clamp(x, 0.0, 1.0)
-}
-
 /// One octave of the filtered noise, the body of a fold.
 pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> FunctionRef {
     let count = derivatives(mode);
     let row = row(module, count, octaves.tiles());
     let doc = "One more octave of the filtered noise.";
-    let mut builder = Builder::new("lattice_octave", doc);
-    let b = &mut builder;
-    b.param("index", Type::U32);
+    let b = &Builder::new("lattice_octave", doc);
+    b.uint_param("index");
     let names = &["mean", "dx", "dy", "dxx", "dxy", "dyy"][..(count + 1) * (count + 2) / 2];
-    let sums: Vec<Value> = names.iter().map(|name| b.param_f32(*name)).collect();
-    let rest = mode.spreads().then(|| b.param_f32("rest"));
+    let sums: Vec<Float<'_>> = names.iter().map(|name| b.float_param(*name)).collect();
+    let rest = mode.spreads().then(|| b.float_param("rest"));
     let state = Octave::declare(b, octaves);
-    let covariance = ["s_xx", "s_xy", "s_yy"].map(|name| b.param_f32(name));
-    let (trace, determinant) = (b.param_f32("trace"), b.param_f32("determinant"));
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
+    let covariance = ["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name));
+    let [trace, determinant] = ["trace", "determinant"].map(|name| b.float_param(name));
 
     // The footprint in cells of this octave. The rows are laid along its longer side.
-    let area = b.square(state.scale);
-    let widest = b.f32(1e6);
-    let area = b.min(area, widest);
-    let [s_xx, s_xy, s_yy] = covariance.map(|s| b.mul(s, area));
-    let trace = b.mul(trace, area);
-    let area2 = b.square(area);
-    let determinant = b.mul(determinant, area2);
-    let energy = Energy::new(b, trace, determinant);
-    let swapped = b.lt(s_yy, s_xx);
-    let (across, along) = (b.min(s_xx, s_yy), b.max(s_xx, s_yy));
-    let t_yy = b.offset(along, WIDTH * WIDTH);
-    let q = b.div(one, t_yy);
-    let shear = b.mul(s_xy, q);
-    let p = b.mul(t_yy, energy.inverse);
-    let p = b.scale(p, WIDTH.powi(-4));
-    let minus = b.neg(p);
-    let decay = b.exp(minus);
+    let area = state.scale.square().min(1e6);
+    let [s_xx, s_xy, s_yy] = covariance.map(|s| s * area);
+    let energy = Energy::new(trace * area, determinant * area.square());
+    let swapped = s_yy.lt(s_xx);
+    let (across, along) = (s_xx.min(s_yy), s_xx.max(s_yy));
+    let t_yy = along + WIDTH * WIDTH;
+    let q = 1.0 / t_yy;
+    let shear = s_xy * q;
+    let p = t_yy * energy.inverse * WIDTH.powi(-4);
 
     // How many rows. What is dropped for want of rows or columns is below 0.015 of the noise.
-    let lean = b.mul(shear, s_xy);
-    let across = b.sub(across, lean);
-    let outer = [ramp(b, across, FOURTH), ramp(b, along, FOURTH)];
-    let size = b.sqrt(t_yy);
-    let needed = b.scale(size, 2.0 * REACH);
-    let (three, four) = (b.f32(3.0), b.f32(4.0));
-    let power = b.square(state.amplitude);
-    let share = b.scale(power, 1.0 / octaves.sd().powi(2));
-    let (is_near, minor) = (b.le(outer[1], zero), b.f32(MINOR_SHARE));
-    let is_minor = b.lt(share, minor);
-    let is_near = b.or(is_near, is_minor);
-    let least = b.select(is_near, three, four);
-    let minus = b.neg(needed);
-    let floor = b.floor(minus);
-    let rows = b.neg(floor);
-    let rows = b.max(rows, least);
-    let most = b.f32(MOST_ROWS);
-    let rows = b.min(rows, most);
+    let across = across - shear * s_xy;
+    let outer = [across, along].map(|spread| share(spread, FOURTH[0], FOURTH[1]));
+    let needed = t_yy.sqrt() * (2.0 * REACH);
+    let power = state.amplitude.square();
+    let energy_share = power * (1.0 / octaves.sd().powi(2));
+    let is_near = outer[1].le(0.0) | energy_share.lt(MINOR_SHARE);
+    let rows = needed.ceil().max(is_near.select(3.0, 4.0)).min(MOST_ROWS);
 
     // The octave fades to nothing before it is dropped.
-    let least = b.f32(LEAST_SHARE);
-    let share = b.max(share, least);
-    let kept = b.mul(energy.left, share);
-    let by_energy = ramp(b, kept, FADE);
-    let by_reach = ramp(b, needed, [MOST_ROWS, MOST_ROWS * 0.8]);
-    let fade = b.mul(by_energy, by_reach);
-    let gone = b.le(fade, zero);
-    let (none, row_count) = (b.u32(0), b.trunc_i(rows));
-    let row_count = b.cast_u(row_count);
-    let row_count = b.select(gone, none, row_count);
+    let kept = energy.left * energy_share.max(LEAST_SHARE);
+    let by_energy = share(kept, FADE[0], FADE[1]);
+    let by_reach = share(needed, MOST_ROWS, MOST_ROWS * 0.8);
+    let fade = by_energy * by_reach;
+    let row_count = fade.le(0.0).select(0, rows.to_int().to_uint());
 
     // The position in the rows' frame.
-    let [x, y] = state.fractions;
-    let (x, y) = (b.select(swapped, y, x), b.select(swapped, x, y));
-    let half = b.scale(rows, -0.5);
-    let start = b.add(y, half);
-    let start = b.floor(start);
-    let start = b.offset(start, 1.0);
-    let address = state
-        .address(b)
-        .swapped(b, swapped)
-        .rows_counted_from(b, start);
+    let [x, y] = exchanged(swapped, state.fractions);
+    let start = (y + rows * -0.5).floor() + 1.0;
+    let address = state.address().swapped(swapped).rows_counted_from(start);
     // Of four rows the one that is not among the nearest three.
-    let (first_row, last_row, no_row) = (b.u32(0), b.u32(3), b.u32(u32::MAX));
-    let floor = b.floor(y);
-    let fraction = b.sub(y, floor);
-    let rounded = b.offset(fraction, 0.5);
-    let right = b.le(one, rounded);
-    let outer_row = b.select(right, first_row, last_row);
-    let outer_row = b.select(is_near, no_row, outer_row);
-    let minus = b.f32(-1.0);
-    let sign = b.select(swapped, minus, one);
-    let square = b.square(shear);
-    let even = b.sub(one, square);
+    let right = (y - y.floor() + 0.5).ge(1.0);
+    let outer_row = is_near.select(u32::MAX, right.select(0u32, 3u32));
+    let sign = swapped.select(-1.0, 1.0);
     let turn = [
-        b.mul(sign, even),
-        b.mul(sign, shear),
-        b.neg(sign),
-        b.add(shear, shear),
+        sign * (1.0 - shear.square()),
+        sign * shear,
+        -sign,
+        shear + shear,
     ];
     let frame = Frame {
         x,
-        y: b.sub(y, start),
+        y: y - start,
         address,
         shear,
         turn,
         precisions: [p, q],
-        decay,
+        decay: (-p).exp(),
         outer_row,
         outer,
     };
-    let zeros = vec![zero; orders(count).len()];
-    let kernels = b.fold(&row, row_count, &zeros, &frame.captures());
-    let parts = in_lattice(b, swapped, shear, &kernels);
+    let zeros = vec![b.float(0.0); orders(count).len()];
+    let kernels = b.fold(&row, row_count, zeros, frame.captures());
+    let parts = in_lattice(swapped, shear, &kernels);
 
     // κ = a³/(√π √det T) = a/√(πD).
-    let kappa = b.scale(energy.root, WIDTH / std::f32::consts::PI.sqrt());
-    let faded = b.mul(kappa, fade);
-    let weight = b.mul(faded, state.amplitude);
-    let steep = b.mul(weight, state.scale);
-    let bent = b.mul(weight, area);
+    let kappa = energy.root * (WIDTH / std::f32::consts::PI.sqrt());
+    let weight = kappa * fade * state.amplitude;
+    let (steep, bent) = (weight * state.scale, weight * area);
     let weights = [weight, steep, steep, bent, bent, bent];
     for (((name, sum), part), weight) in names.iter().zip(sums).zip(parts).zip(weights) {
-        let part = b.mul(weight, part);
-        let total = b.add(sum, part);
-        b.result(*name, total);
+        b.result(*name, sum + weight * part);
     }
     if let Some(rest) = rest {
-        let left = remainder(b, mode, &energy, fade);
-        let part = b.mul(power, left);
-        let rest = b.add(rest, part);
-        b.result("rest", rest);
+        b.result("rest", rest + power * remainder(mode, &energy, fade));
     }
     state.advance(b, octaves);
-    builder.finish(module)
+    b.finish(module)
 }
 
 /// The noise and its derivatives (x, y, xx, xy, yy) in the lattice's frame, from those along x′ and y
 /// up to the sign (−1)^{i+j}: ∂ₓ is ∂ₓ′, and ∂ᵧ is ∂ᵧ − t∂ₓ′.
-fn in_lattice(b: &mut Builder, swapped: Value, t: Value, sums: &[Value]) -> Vec<Value> {
+fn in_lattice<'b>(swapped: Bool<'b>, t: Float<'b>, sums: &[Float<'b>]) -> Vec<Float<'b>> {
     let mut parts = vec![sums[0]];
     if let [_, x, y, ..] = *sums {
-        let lean = b.mul(t, x);
-        let y = b.sub(lean, y);
-        let x = b.neg(x);
-        parts.extend([b.select(swapped, y, x), b.select(swapped, x, y)]);
+        parts.extend(exchanged(swapped, [-x, t * x - y]));
     }
     if let [_, _, _, xx, xy, yy] = *sums {
-        let lean = b.mul(t, xx);
-        let mixed = b.sub(xy, lean);
-        let twice = b.add(t, t);
-        let square = b.square(t);
-        let cross = b.mul(twice, xy);
-        let steep = b.mul(square, xx);
-        let yy = b.sub(yy, cross);
-        let yy = b.add(yy, steep);
-        parts.extend([b.select(swapped, yy, xx), mixed, b.select(swapped, xx, yy)]);
+        let mixed = xy - t * xx;
+        let yy = yy - (t + t) * xy + t.square() * xx;
+        let [xx, yy] = exchanged(swapped, [xx, yy]);
+        parts.extend([xx, mixed, yy]);
     }
     parts
 }
 
 /// What the filter removed, 1 − F, less what the mode carries of it, plus what fading drops: shares
 /// of the octave's variance. V − V₁ is at least V₂; below 6e-7 the difference is rounding.
-fn remainder(b: &mut Builder, mode: Mode, energy: &Energy, fade: Value) -> Value {
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-    let lost = b.sub(one, energy.left);
-    let square = b.square(fade);
-    let kept = b.sub(one, fade);
-    let dropped = b.square(kept);
-    let dropped = b.mul(dropped, energy.left);
-    let uncarried = b.sub(one, square);
+fn remainder<'b>(mode: Mode, energy: &Energy<'b>, fade: Float<'b>) -> Float<'b> {
+    let zero = fade.literal(0.0);
     let (carried, least) = match mode {
         Mode::Local => (energy.first, energy.least),
-        Mode::Quad => (b.add(energy.first, energy.second), zero),
+        Mode::Quad => (energy.first + energy.second, zero),
         _ => (zero, zero),
     };
-    let left = b.sub(lost, carried);
-    let left = b.offset(left, -6e-7);
-    let left = b.max(left, least);
-    let back = b.mul(uncarried, carried);
-    let left = b.add(left, back);
-    b.add(left, dropped)
+    let left = (1.0 - energy.left - carried + -6e-7).max(least);
+    let uncarried = 1.0 - fade.square();
+    let dropped = (1.0 - fade).square() * energy.left;
+    left + uncarried * carried + dropped
 }

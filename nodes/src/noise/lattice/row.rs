@@ -9,7 +9,7 @@
 
 use super::address::Address;
 use crate::noise::hash::direction;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Scalar, Scalars, Uint, dot};
 
 /// The orders along x′ and y of the noise and its derivatives, up to `most`.
 pub(super) fn orders(most: usize) -> Vec<[usize; 2]> {
@@ -19,64 +19,62 @@ pub(super) fn orders(most: usize) -> Vec<[usize; 2]> {
 
 /// g₀, g₁, …, gₙ for g₀ = `envelope`: gₙ = (−1)ⁿ ∂ⁿ of a Gaussian of precision `p`, where `v` is
 /// p times the offset.
-fn derivatives(b: &mut Builder, envelope: Value, v: Value, p: Value, order: usize) -> Vec<Value> {
-    let mut all = vec![envelope, b.mul(v, envelope)];
+fn derivatives<'b>(
+    envelope: Float<'b>,
+    v: Float<'b>,
+    p: Float<'b>,
+    order: usize,
+) -> Vec<Float<'b>> {
+    let mut all = vec![envelope, v * envelope];
     for n in 2..=order {
-        let up = b.mul(v, all[n - 1]);
-        let factor = b.scale(p, (n - 1) as f32);
-        let down = b.mul(factor, all[n - 2]);
-        all.push(b.sub(up, down));
+        all.push(v * all[n - 1] - p * (n - 1) as f32 * all[n - 2]);
     }
     all
 }
 
 /// What the rows of an octave share, in the order of the captures.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct Frame<'b> {
     /// The position, relative to the cell.
-    pub(super) x: Value,
+    pub(super) x: Float<'b>,
     /// The offset of the position to the first row.
-    pub(super) y: Value,
+    pub(super) y: Float<'b>,
     /// The lattice, its rows counted from the first one.
-    pub(super) address: Address,
+    pub(super) address: Address<'b>,
     /// t.
-    pub(super) shear: Value,
+    pub(super) shear: Float<'b>,
     /// ±(1 − t²), ±t and ∓1 for cos θ, and 2t: the lower signs where the rows lie along x.
-    pub(super) turn: [Value; 4],
+    pub(super) turn: [Float<'b>; 4],
     /// p, q.
-    pub(super) precisions: [Value; 2],
+    pub(super) precisions: [Float<'b>; 2],
     /// e^{−p}.
-    pub(super) decay: Value,
+    pub(super) decay: Float<'b>,
     /// The row that counts in part only, and the weight of it and of the outermost column.
-    pub(super) outer_row: Value,
-    pub(super) outer: [Value; 2],
+    pub(super) outer_row: Uint<'b>,
+    pub(super) outer: [Float<'b>; 2],
 }
 
-impl Frame {
-    fn declare(b: &mut Builder, tiles: bool) -> Self {
+impl<'b> Frame<'b> {
+    fn declare(b: &'b Builder, tiles: bool) -> Self {
         Self {
-            x: b.param_f32("x"),
-            y: b.param_f32("y"),
+            x: b.float_param("x"),
+            y: b.float_param("y"),
             address: Address::declare(b, tiles),
-            shear: b.param_f32("shear"),
+            shear: b.float_param("shear"),
             turn: ["turn_even", "turn_lean", "turn_level", "turn_steep"]
-                .map(|name| b.param_f32(name)),
-            precisions: [b.param_f32("p"), b.param_f32("q")],
-            decay: b.param_f32("decay"),
-            outer_row: b.param("outer_row", Type::U32),
-            outer: [b.param_f32("outer_x"), b.param_f32("outer_y")],
+                .map(|name| b.float_param(name)),
+            precisions: ["p", "q"].map(|name| b.float_param(name)),
+            decay: b.float_param("decay"),
+            outer_row: b.uint_param("outer_row"),
+            outer: ["outer_x", "outer_y"].map(|name| b.float_param(name)),
         }
     }
 
-    pub(super) fn captures(&self) -> Vec<Value> {
-        let [p, q] = self.precisions;
-        let mut all = vec![self.x, self.y];
-        all.extend(self.address.captures());
-        all.push(self.shear);
-        all.extend(self.turn);
-        all.extend([p, q, self.decay, self.outer_row]);
-        all.extend(self.outer);
-        all
+    /// All of it, in the order of the parameters.
+    pub(super) fn captures(&self) -> Vec<Scalar<'b>> {
+        let place = (self.x, self.y, self.address);
+        let shape = (self.shear, self.turn, self.precisions, self.decay);
+        (place, shape, (self.outer_row, self.outer)).scalars()
     }
 }
 
@@ -85,92 +83,73 @@ pub(super) fn row(module: &mut Module, count: usize, tiles: bool) -> FunctionRef
     let orders = orders(count);
     let most = 2 + count;
     let doc = "The filtered kernels of one lattice row.";
-    let mut builder = Builder::new("lattice_row", doc);
-    let b = &mut builder;
-    let index = b.param("index", Type::U32);
-    let sums: Vec<Value> = (0..orders.len())
-        .map(|i| b.param_f32(format!("sum_{i}")))
+    let b = &Builder::new("lattice_row", doc);
+    let index = b.uint_param("index");
+    let sums: Vec<Float<'_>> = (0..orders.len())
+        .map(|i| b.float_param(format!("sum_{i}")))
         .collect();
     let frame = Frame::declare(b, tiles);
     let [p, q] = frame.precisions;
-    let one = b.f32(1.0);
 
-    let number = b.float_u(index);
-    let dy = b.sub(frame.y, number);
-    let w = b.mul(dy, q);
     // The row's largest envelope lies where x′ is 0.
-    let lean = b.mul(frame.shear, dy);
-    let centre = b.sub(frame.x, lean);
-    let middle = b.floor(centre);
-    let x = b.sub(centre, middle);
-    let start = b.offset(middle, -1.0);
-    let keys = frame.address.keys(b, index, start, 4);
+    let dy = frame.y - index.to_float();
+    let w = dy * q;
+    let centre = frame.x - frame.shear * dy;
+    let middle = centre.floor();
+    let x = centre - middle;
+    let keys = frame.address.keys(index, middle + -1.0, 4);
 
     // The envelopes at x′ = x + 1, x, x − 1 and x − 2: two exponentials, the rest by ratios.
-    let v = b.mul(p, x);
-    let (along, across) = (b.mul(x, v), b.mul(dy, w));
-    let exponent = b.add(along, across);
-    let exponent = b.scale(exponent, -0.5);
-    let near = b.exp(exponent);
-    let is_outer = b.eq_u(index, frame.outer_row);
-    let weight = b.select(is_outer, frame.outer[1], one);
-    let near = b.mul(near, weight);
-    let half = b.scale(p, 0.5);
-    let exponent = b.sub(v, half);
-    let ratio = b.exp(exponent);
-    let next = b.mul(near, ratio);
-    let last = b.mul(ratio, frame.decay);
-    let last = b.mul(next, last);
-    let first = b.div(frame.decay, ratio);
-    let first = b.mul(near, first);
+    let v = p * x;
+    let is_outer = index.equals(frame.outer_row);
+    let near = ((x * v + dy * w) * -0.5).exp() * is_outer.select(frame.outer[1], 1.0);
+    let ratio = (v - p * 0.5).exp();
+    let next = near * ratio;
+    let last = next * (ratio * frame.decay);
+    let first = near * (frame.decay / ratio);
     // The nearest three columns count in full, as in the unfiltered noise.
-    let rounded = b.offset(x, 0.5);
-    let right = b.le(one, rounded);
-    let (left_weight, right_weight) = (
-        b.select(right, frame.outer[0], one),
-        b.select(right, one, frame.outer[0]),
-    );
+    let right = (x + 0.5).ge(1.0);
     let envelopes = [
-        b.mul(first, left_weight),
+        first * right.select(frame.outer[0], 1.0),
         near,
         next,
-        b.mul(last, right_weight),
+        last * right.select(1.0, frame.outer[0]),
     ];
 
+    // Three sums over the columns give every derivative along x′.
     let [even, lean, minus, twice] = frame.turn;
-    let mut columns: [Vec<Value>; 3] = Default::default();
-    let mut v = b.add(v, p);
+    let mut columns: [Vec<Float<'_>>; 3] = Default::default();
+    let mut v = v + p;
     for (key, envelope) in keys.into_iter().zip(envelopes) {
-        let hash = b.scramble(key);
-        let [cosine, sine] = direction(b, hash);
-        let polynomials = derivatives(b, envelope, v, p, most);
-        let (level, slope) = (b.mul(even, cosine), b.mul(twice, sine));
-        let across = b.sub(level, slope);
-        let level = b.mul(lean, cosine);
-        let mixed = b.add(level, sine);
+        let [cosine, sine] = direction(key.scramble());
+        let polynomials = derivatives(envelope, v, p, most);
+        let across = even * cosine - twice * sine;
+        let mixed = lean * cosine + sine;
         for (sums, (turn, first)) in
             (columns.iter_mut()).zip([(across, 2), (mixed, 1), (cosine, 0)])
         {
             let parts = polynomials[first..=first + count].iter();
-            let parts: Vec<Value> = parts.map(|&g| b.mul(turn, g)).collect();
+            let parts: Vec<Float<'_>> = parts.map(|&g| turn * g).collect();
             *sums = match sums.is_empty() {
                 true => parts,
-                false => (sums.iter().zip(parts))
-                    .map(|(&s, part)| b.add(s, part))
+                false => sums
+                    .iter()
+                    .zip(parts)
+                    .map(|(&sum, part)| sum + part)
                     .collect(),
             };
         }
-        v = b.sub(v, p);
+        v -= p;
     }
-    let rows = derivatives(b, one, w, q, most);
+    let rows = derivatives(b.float(1.0), w, q, most);
     let [across, mixed, level] = columns;
     for (i, (&[x, y], &sum)) in orders.iter().zip(&sums).enumerate() {
-        let double = b.add(rows[y + 1], rows[y + 1]);
-        let steep = b.mul(minus, rows[y + 2]);
         let columns = [across[x], mixed[x], level[x]];
-        let part = b.dot(&columns, &[rows[y], double, steep]);
-        let sum = b.add(sum, part);
-        b.result(format!("sum_{i}"), sum);
+        let part = dot(
+            columns,
+            [rows[y], rows[y + 1] + rows[y + 1], minus * rows[y + 2]],
+        );
+        b.result(format!("sum_{i}"), sum + part);
     }
-    builder.finish(module)
+    b.finish(module)
 }

@@ -1,7 +1,7 @@
 //! The energy that a filter leaves of a noise with the quintic window.
 
 use super::Kind;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Float, Sym2};
 
 /// The spectrum of w, |ŵ(k)|², is e^{−Ak²} (A is this) to within 2.3 % of the energy that any Gaussian filter
 /// leaves or removes.
@@ -12,68 +12,49 @@ pub(in crate::noise) const PRODUCT_WIDTH: f32 = 0.107_2;
 
 /// The footprint in squared cells.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Footprint {
-    /// Σ₁₁, Σ₁₂, Σ₂₂.
-    pub(super) covariance: [Value; 3],
+pub(super) struct Footprint<'b> {
+    /// Σ.
+    pub(super) covariance: Sym2<'b>,
     /// det Σ.
-    pub(super) determinant: Value,
+    pub(super) determinant: Float<'b>,
 }
 
 /// F(Σ)/F(0), and V₁ = −∂_λ F(λΣ), V₂ = ½ ∂²_λ F(λΣ) at λ = 1 as shares of F(0). The spectra are
 /// positive, so all three and 1 − F − V₁ − V₂ are.
-pub(super) fn energies(b: &mut Builder, kind: Kind, footprint: &Footprint) -> [Value; 3] {
-    let [xx, _, yy] = footprint.covariance;
+pub(super) fn energies<'b>(kind: Kind, footprint: &Footprint<'b>) -> [Float<'b>; 3] {
+    let [xx, _, yy] = *footprint.covariance;
     match kind {
-        Kind::Value => term(b, footprint, [WINDOW_WIDTH, WINDOW_WIDTH], None),
+        Kind::Value => term(footprint, [WINDOW_WIDTH, WINDOW_WIDTH], None),
         Kind::Gradient => {
-            let along = term(b, footprint, [PRODUCT_WIDTH, WINDOW_WIDTH], Some(yy));
-            let across = term(b, footprint, [WINDOW_WIDTH, PRODUCT_WIDTH], Some(xx));
-            let mut both = [along[0]; 3];
-            for (i, sum) in both.iter_mut().enumerate() {
-                let total = b.add(along[i], across[i]);
-                *sum = b.scale(total, 0.5);
-            }
-            both
+            let along = term(footprint, [PRODUCT_WIDTH, WINDOW_WIDTH], Some(yy));
+            let across = term(footprint, [WINDOW_WIDTH, PRODUCT_WIDTH], Some(xx));
+            std::array::from_fn(|i| (along[i] + across[i]) * 0.5)
         }
     }
 }
 
 /// One separable part of the spectrum: with D the diagonal of `widths`, e(λ) = det(D + λΣ)/det D
 /// and n(λ) = 1 + λ s/A, F = n e^{−3/2} where there is an s, and e^{−1/2} else.
-fn term(b: &mut Builder, footprint: &Footprint, widths: [f32; 2], s: Option<Value>) -> [Value; 3] {
-    let [xx, _, yy] = footprint.covariance;
+fn term<'b>(footprint: &Footprint<'b>, widths: [f32; 2], s: Option<Float<'b>>) -> [Float<'b>; 3] {
+    let [xx, _, yy] = *footprint.covariance;
     let [p, q] = widths.map(|w| 1.0 / w);
-    let bent = b.scale(footprint.determinant, p * q);
-    let (along, across) = (b.scale(xx, p), b.scale(yy, q));
-    let linear = b.add(along, across);
-    let e = b.offset(linear, 1.0);
-    let e = b.add(e, bent);
-    let one = b.f32(1.0);
-    let inverse = b.div(one, e);
+    let bent = footprint.determinant * (p * q);
+    let linear = xx * p + yy * q;
+    let inverse = 1.0 / (linear + 1.0 + bent);
     // e′/e and e″/e.
-    let double = b.add(bent, bent);
-    let first = b.add(linear, double);
-    let first = b.mul(first, inverse);
-    let second = b.mul(double, inverse);
-    let square = b.square(first);
-    let root = b.sqrt(inverse);
+    let double = bent + bent;
+    let first = (linear + double) * inverse;
+    let second = double * inverse;
+    let square = first.square();
+    let root = inverse.sqrt();
     let Some(s) = s else {
-        let v1 = b.scale(first, 0.5);
-        let (square, second) = (b.scale(square, 0.375), b.scale(second, 0.25));
-        let v2 = b.sub(square, second);
-        return [root, b.mul(v1, root), b.mul(v2, root)];
+        let v2 = square * 0.375 - second * 0.25;
+        return [root, first * 0.5 * root, v2 * root];
     };
-    let slope = b.scale(s, 1.0 / WINDOW_WIDTH);
-    let n = b.offset(slope, 1.0);
-    let root = b.mul(root, inverse);
-    let fall = b.mul(n, first);
-    let fall = b.scale(fall, 1.5);
-    let v1 = b.sub(fall, slope);
-    let (square, second) = (b.scale(square, 1.875), b.scale(second, 0.75));
-    let bend = b.sub(square, second);
-    let bend = b.mul(n, bend);
-    let cross = b.mul(slope, first);
-    let cross = b.scale(cross, 1.5);
-    let v2 = b.sub(bend, cross);
-    [b.mul(n, root), b.mul(v1, root), b.mul(v2, root)]
+    let slope = s * (1.0 / WINDOW_WIDTH);
+    let n = slope + 1.0;
+    let root = root * inverse;
+    let v1 = n * first * 1.5 - slope;
+    let v2 = n * (square * 1.875 - second * 0.75) - slope * first * 1.5;
+    [n * root, v1 * root, v2 * root]
 }

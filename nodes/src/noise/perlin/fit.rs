@@ -12,7 +12,8 @@
 //!
 //! As Q is a sum over the axes, ∂_i∂_j q = 0 for i ≠ j.
 
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Float, dot};
+use std::array;
 
 /// Q and the width of the Gaussian.
 #[derive(Clone, Copy, Debug)]
@@ -43,63 +44,65 @@ pub(super) const VALUE: Fit = Fit {
 
 /// What is random at a lattice point.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Weight<const D: usize> {
+pub(crate) enum Weight<'b, const D: usize> {
     /// A factor.
-    Number(Value),
+    Number(Float<'b>),
     /// g of g·d, a direction.
-    Direction([Value; D]),
+    Direction([Float<'b>; D]),
 }
 
 /// The footprint as kernels see it, in units of b.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shape<const D: usize> {
+pub(crate) struct Shape<'b, const D: usize> {
     /// M.
-    pub(crate) inverse: [[Value; D]; D],
+    pub(crate) inverse: [[Float<'b>; D]; D],
     /// C.
-    pub(crate) covariance: [[Value; D]; D],
+    pub(crate) covariance: [[Float<'b>; D]; D],
     /// T.
-    pub(crate) total: [[Value; D]; D],
+    pub(crate) total: [[Float<'b>; D]; D],
 }
 
 /// q and its first three derivatives along each axis.
-struct Expectation<const D: usize> {
-    value: Value,
-    derivatives: [[Value; 3]; D],
+struct Expectation<'b, const D: usize> {
+    value: Float<'b>,
+    derivatives: [[Float<'b>; 3]; D],
+}
+
+/// A function of D numbers, its gradient and its Hessian.
+struct Jet<'b, const D: usize> {
+    value: Float<'b>,
+    slopes: [Float<'b>; D],
+    bends: [[Float<'b>; D]; D],
 }
 
 impl Fit {
-    fn expectation<const D: usize>(
+    fn expectation<'b, const D: usize>(
         self,
-        b: &mut Builder,
-        means: [Value; D],
-        shape: &Shape<D>,
-    ) -> Expectation<D> {
-        let mut value = b.f32(self.coefficients[0]);
-        let derivatives = std::array::from_fn(|i| {
+        means: [Float<'b>; D],
+        shape: &Shape<'b, D>,
+    ) -> Expectation<'b, D> {
+        let mut value = means[0].literal(self.coefficients[0]);
+        let derivatives = array::from_fn(|i| {
             let (mean, variance) = (means[i], shape.covariance[i][i]);
-            let mut heat = vec![b.f32(1.0), mean];
+            let mut heat = vec![mean.literal(1.0), mean];
             for n in 1..6 {
-                let rise = b.mul(mean, heat[n]);
-                let spread = b.scale(variance, n as f32);
-                let spread = b.mul(spread, heat[n - 1]);
-                heat.push(b.add(rise, spread));
+                heat.push(mean * heat[n] + variance * n as f32 * heat[n - 1]);
             }
-            let [own, first, second, third] = std::array::from_fn(|order: usize| {
-                let mut sum = b.f32(0.0);
-                for (k, &coefficient) in self.coefficients.iter().enumerate().skip(1) {
-                    let power = 2 * k;
-                    if power < order {
-                        continue;
-                    }
-                    // Hₙ′ = nHₙ₋₁.
-                    let factor = (power - order + 1..=power).product::<usize>() as f32;
-                    let factor = factor * coefficient * self.width.powi(power as i32);
-                    let part = b.scale(heat[power - order], factor);
-                    sum = b.add(sum, part);
-                }
-                sum
+            let [own, first, second, third] = array::from_fn(|order: usize| {
+                let powers = self.coefficients.iter().enumerate().skip(1);
+                let powers = powers.map(|(k, &coefficient)| (2 * k, coefficient));
+                let terms =
+                    powers
+                        .filter(|&(power, _)| power >= order)
+                        .map(|(power, coefficient)| {
+                            // Hₙ′ = nHₙ₋₁.
+                            let factor = (power - order + 1..=power).product::<usize>() as f32;
+                            let factor = factor * coefficient * self.width.powi(power as i32);
+                            heat[power - order] * factor
+                        });
+                mean.builder().sum(terms)
             });
-            value = b.add(value, own);
+            value += own;
             [first, second, third]
         });
         Expectation { value, derivatives }
@@ -109,78 +112,73 @@ impl Fit {
     /// all that depends on it (the pairs of axes row by row), without the envelope and with M still
     /// to be applied once for each derivative: ∇G − dG and
     /// ∇²G − d∇Gᵀ − ∇G dᵀ + (ddᵀ − T)G, where G is a function of μ.
-    pub(crate) fn kernel<const D: usize>(
+    pub(crate) fn kernel<'b, const D: usize>(
         self,
-        b: &mut Builder,
-        weight: Weight<D>,
-        (d, means): ([Value; D], [Value; D]),
-        shape: &Shape<D>,
+        weight: Weight<'b, D>,
+        (d, means): ([Float<'b>; D], [Float<'b>; D]),
+        shape: &Shape<'b, D>,
         order: usize,
-    ) -> Vec<Value> {
-        let q = self.expectation(b, means, shape);
-        let (value, slopes, bends) = match weight {
-            Weight::Number(v) => (
-                b.mul(v, q.value),
-                q.derivatives.map(|[first, ..]| b.mul(v, first)),
-                std::array::from_fn(|i| {
-                    let mut row = [b.f32(0.0); D];
-                    row[i] = b.mul(v, q.derivatives[i][1]);
+    ) -> Vec<Float<'b>> {
+        let q = self.expectation(means, shape);
+        let jet = match weight {
+            Weight::Number(v) => Jet {
+                value: v * q.value,
+                slopes: q.derivatives.map(|[first, ..]| v * first),
+                bends: array::from_fn(|i| {
+                    let mut row = [v.literal(0.0); D];
+                    row[i] = v * q.derivatives[i][1];
                     row
                 }),
-            ),
+            },
             Weight::Direction(g) => {
-                let along = b.dot(&g, &means);
-                let turned = shape.covariance.map(|row| b.dot(&row, &g));
+                let along = dot(g, means);
+                let turned = shape.covariance.map(|row| dot(row, g));
                 let first = q.derivatives.map(|[first, ..]| first);
-                let lean = b.dot(&turned, &first);
-                let own = b.mul(along, q.value);
-                let value = b.add(own, lean);
-                let slopes = std::array::from_fn(|i| {
-                    let [first, second, _] = q.derivatives[i];
-                    b.dot(&[g[i], along, turned[i]], &[q.value, first, second])
-                });
-                let bends = std::array::from_fn(|i| {
-                    std::array::from_fn(|j| {
-                        let outer = b.dot(&[g[i], g[j]], &[first[j], first[i]]);
-                        if i != j {
-                            return outer;
-                        }
-                        let [_, second, third] = q.derivatives[i];
-                        let own = b.dot(&[along, turned[i]], &[second, third]);
-                        b.add(outer, own)
-                    })
-                });
-                (value, slopes, bends)
+                Jet {
+                    value: along * q.value + dot(turned, first),
+                    slopes: array::from_fn(|i| {
+                        let [first, second, _] = q.derivatives[i];
+                        dot([g[i], along, turned[i]], [q.value, first, second])
+                    }),
+                    bends: array::from_fn(|i| {
+                        array::from_fn(|j| {
+                            let outer = g[i] * first[j] + g[j] * first[i];
+                            if i != j {
+                                return outer;
+                            }
+                            let [_, second, third] = q.derivatives[i];
+                            outer + (along * second + turned[i] * third)
+                        })
+                    }),
+                }
             }
         };
-        bent(b, (value, slopes, bends), d, shape, order)
+        bent(&jet, d, shape, order)
     }
 }
 
 /// Derivatives of e^{−d·μ/2} G by d.
-fn bent<const D: usize>(
-    b: &mut Builder,
-    (value, slopes, bends): (Value, [Value; D], [[Value; D]; D]),
-    d: [Value; D],
-    shape: &Shape<D>,
+fn bent<'b, const D: usize>(
+    jet: &Jet<'b, D>,
+    d: [Float<'b>; D],
+    shape: &Shape<'b, D>,
     order: usize,
-) -> Vec<Value> {
+) -> Vec<Float<'b>> {
+    let Jet {
+        value,
+        slopes,
+        bends,
+    } = *jet;
     let mut parts = vec![value];
     if order > 0 {
-        for i in 0..D {
-            let drop = b.mul(d[i], value);
-            parts.push(b.sub(slopes[i], drop));
-        }
+        parts.extend((0..D).map(|i| slopes[i] - d[i] * value));
     }
     if order > 1 {
         for i in 0..D {
             for j in i..D {
-                let outer = b.dot(&[d[i], d[j]], &[slopes[j], slopes[i]]);
-                let square = b.mul(d[i], d[j]);
-                let square = b.sub(square, shape.total[i][j]);
-                let own = b.mul(square, value);
-                let part = b.sub(bends[i][j], outer);
-                parts.push(b.add(part, own));
+                let outer = d[i] * slopes[j] + d[j] * slopes[i];
+                let own = (d[i] * d[j] - shape.total[i][j]) * value;
+                parts.push(bends[i][j] - outer + own);
             }
         }
     }

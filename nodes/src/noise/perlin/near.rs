@@ -4,44 +4,30 @@ use super::grid::Grid;
 use super::profile::{DERIVATIVES, joint, quintic};
 use super::{Kind, NAMES};
 use crate::noise::sum::parts;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, FunctionRef, Module};
 use mipless_codegen::moments::Mode;
 
 /// The four corners' kernels and their derivatives in cells, the body of a fold of at most one
 /// turn: the state is replaced. Captures: the grid, the fraction and the footprint's covariance.
 pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
     let doc = "The noise over a footprint that is narrow against a cell.";
-    let mut b = Builder::new(format!("{}_near", kind.name()), doc);
-    b.param("index", Type::U32);
+    let b = &Builder::new(format!("{}_near", kind.name()), doc);
+    b.uint_param("index");
     for name in &NAMES[..parts(mode)] {
-        b.param_f32(format!("state_{name}"));
+        b.float_param(format!("state_{name}"));
     }
-    let grid = Grid::declare(&mut b, tiles);
-    let fractions = [b.param_f32("x"), b.param_f32("y")];
-    let xx = b.param_f32("s_xx");
-    let xy = b.param_f32("s_xy");
-    let yy = b.param_f32("s_yy");
-    let half = b.square(xy);
-    let powers = [xy, b.scale(half, 0.5)];
-    let mut axes = Vec::new();
-    for (t, spread) in fractions.into_iter().zip([xx, yy]) {
-        let one = b.f32(1.0);
-        let back = b.sub(one, t);
-        axes.push([
-            quintic(&mut b, t, false, spread),
-            quintic(&mut b, back, true, spread),
-        ]);
-    }
-    let hashes = grid.corners(&mut b);
-    let mut totals: Vec<Value> = vec![b.f32(0.0); parts(mode)];
-    for (corner, hash) in hashes.into_iter().enumerate() {
+    let grid = Grid::declare(b, tiles);
+    let fractions = ["x", "y"].map(|name| b.float_param(name));
+    let [xx, xy, yy] = ["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name));
+    let powers = [xy, xy.square() * 0.5];
+    let axes = [(fractions[0], xx), (fractions[1], yy)]
+        .map(|(t, spread)| [quintic(t, false, spread), quintic(1.0 - t, true, spread)]);
+    let mut totals = vec![b.float(0.0); parts(mode)];
+    for (corner, hash) in grid.corners().into_iter().enumerate() {
         let (x, y) = (&axes[0][corner % 2], &axes[1][corner / 2]);
-        let weights = kind.weights(&mut b, hash);
-        for (weight, &[i, j]) in weights.into_iter().zip(kind.terms()) {
+        for (weight, &[i, j]) in kind.weights(hash).into_iter().zip(kind.terms()) {
             for (total, along) in totals.iter_mut().zip(DERIVATIVES) {
-                let kernel = joint(&mut b, [&x[i], &y[j]], along, &powers);
-                let part = b.mul(weight, kernel);
-                *total = b.add(*total, part);
+                *total += weight * joint([&x[i], &y[j]], along, &powers);
             }
         }
     }

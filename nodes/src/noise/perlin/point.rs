@@ -2,55 +2,40 @@
 
 use super::Kind;
 use super::grid::Grid;
-use crate::noise::octave::Octave;
+use crate::noise::sum::Octave;
 use crate::noise::sum::Octaves;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, dot};
 
 /// The fade of Perlin 2002, 6t⁵ − 15t⁴ + 10t³.
-pub(in crate::noise) fn fade(b: &mut Builder, t: Value) -> Value {
-    let rest = b.scale(t, 6.0);
-    let rest = b.offset(rest, -15.0);
-    let rest = b.mul(t, rest);
-    let rest = b.offset(rest, 10.0);
-    let square = b.square(t);
-    let cube = b.mul(square, t);
-    b.mul(cube, rest)
+pub(in crate::noise) fn fade(t: Float<'_>) -> Float<'_> {
+    t.square() * t * (t * (t * 6.0 + -15.0) + 10.0)
 }
 
 /// x + share · (y − x).
-pub(in crate::noise) fn between(b: &mut Builder, share: Value, [x, y]: [Value; 2]) -> Value {
-    let rise = b.sub(y, x);
-    let part = b.mul(share, rise);
-    b.add(x, part)
+pub(in crate::noise) fn between<'b>(share: Float<'b>, [x, y]: [Float<'b>; 2]) -> Float<'b> {
+    x + share * (y - x)
 }
 
 /// One octave of the unfiltered noise, the body of a fold.
 pub(super) fn octave(module: &mut Module, kind: Kind, octaves: Octaves) -> FunctionRef {
     let doc = "One more octave of the unfiltered noise.";
-    let mut b = Builder::new(format!("{}_octave", kind.name()), doc);
-    b.param("index", Type::U32);
-    let sum = b.param_f32("mean");
-    let state = Octave::declare(&mut b, octaves);
-    let hashes = Grid::of(&state).corners(&mut b);
-    let offsets = state.fractions.map(|t| [t, b.offset(t, -1.0)]);
-    let mut at = 0;
-    let corners = hashes.map(|hash| {
-        let offset = [offsets[0][at % 2], offsets[1][at / 2]];
-        at += 1;
-        let weights = kind.weights(&mut b, hash);
-        match kind {
-            Kind::Gradient => b.dot(&weights, &offset),
-            Kind::Value => weights[0],
+    let b = &Builder::new(format!("{}_octave", kind.name()), doc);
+    b.uint_param("index");
+    let sum = b.float_param("mean");
+    let state = Octave::declare(b, octaves);
+    let hashes = Grid::of(&state).corners();
+    let [x, y] = state.fractions.map(|t| [t, t + -1.0]);
+    let offsets = [[x[0], y[0]], [x[1], y[0]], [x[0], y[1]], [x[1], y[1]]];
+    let [c00, c10, c01, c11] = std::array::from_fn(|corner| {
+        let weights = kind.weights(hashes[corner]);
+        match (kind, &weights[..]) {
+            (Kind::Gradient, &[x, y]) => dot([x, y], offsets[corner]),
+            _ => weights[0],
         }
     });
-    let [x, y] = state.fractions.map(|t| fade(&mut b, t));
-    let low = between(&mut b, x, [corners[0], corners[1]]);
-    let high = between(&mut b, x, [corners[2], corners[3]]);
-    let noise = between(&mut b, y, [low, high]);
-    let amplitude = b.scale(state.amplitude, kind.unit());
-    let part = b.mul(noise, amplitude);
-    let sum = b.add(sum, part);
-    b.result("mean", sum);
-    state.advance(&mut b, octaves);
+    let [x, y] = state.fractions.map(fade);
+    let noise = between(y, [between(x, [c00, c10]), between(x, [c01, c11])]);
+    b.result("mean", sum + noise * (state.amplitude * kind.unit()));
+    state.advance(b, octaves);
     b.finish(module)
 }

@@ -7,40 +7,32 @@ use super::{Kind, NAMES};
 use crate::noise::hash::corner;
 use crate::noise::sum::{derivatives, parts};
 use crate::noise::window::{count, start};
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Scalars, Sym2, dot};
 use mipless_codegen::moments::Mode;
 
 /// What every kernel of an octave needs of the footprint, in units of the fit's width.
-const CAPTURES: [&str; 9] = [
-    "m_xx", "m_xy", "m_yy", "c_xx", "c_xy", "c_yy", "t_xx", "t_xy", "t_yy",
+const CAPTURES: [[&str; 3]; 3] = [
+    ["m_xx", "m_xy", "m_yy"],
+    ["c_xx", "c_xy", "c_yy"],
+    ["t_xx", "t_xy", "t_yy"],
 ];
 
-/// A symmetric matrix by its entries 11, 12, 22.
-fn symmetric([xx, xy, yy]: [Value; 3]) -> [[Value; 2]; 2] {
+/// A symmetric matrix of all four entries.
+fn symmetric([xx, xy, yy]: [Float<'_>; 3]) -> [[Float<'_>; 2]; 2] {
     [[xx, xy], [xy, yy]]
 }
 
 /// The shape of a footprint, and 1/det T. S and det S are in units of the fit's width.
-pub(super) fn shape(
-    b: &mut Builder,
-    [s_xx, s_xy, s_yy]: [Value; 3],
-    determinant: Value,
-) -> (Shape<2>, Value) {
-    let (t_xx, t_yy) = (b.offset(s_xx, 1.0), b.offset(s_yy, 1.0));
+pub(super) fn shape<'b>(s: Sym2<'b>, determinant: Float<'b>) -> (Shape<'b, 2>, Float<'b>) {
+    let Sym2([s_xx, s_xy, s_yy]) = s;
+    let (t_xx, t_yy) = (s_xx + 1.0, s_yy + 1.0);
     // det T = 1 + tr S + det S, all positive.
-    let trace = b.add(s_xx, s_yy);
-    let whole = b.add(trace, determinant);
-    let whole = b.offset(whole, 1.0);
-    let one = b.f32(1.0);
-    let inverse = b.div(one, whole);
+    let inverse = 1.0 / (s_xx + s_yy + determinant + 1.0);
     // C = (S + det S I)/det T.
-    let [c_xx, c_yy] = [s_xx, s_yy].map(|s| {
-        let s = b.add(s, determinant);
-        b.mul(s, inverse)
-    });
-    let c_xy = b.mul(s_xy, inverse);
+    let [c_xx, c_yy] = [s_xx, s_yy].map(|s| (s + determinant) * inverse);
+    let c_xy = s_xy * inverse;
     let shape = Shape {
-        inverse: symmetric([b.mul(t_yy, inverse), b.neg(c_xy), b.mul(t_xx, inverse)]),
+        inverse: symmetric([t_yy * inverse, -c_xy, t_xx * inverse]),
         covariance: symmetric([c_xx, c_xy, c_yy]),
         total: symmetric([t_xx, s_xy, t_yy]),
     };
@@ -48,18 +40,13 @@ pub(super) fn shape(
 }
 
 /// The captures for a shape.
-pub(super) fn captures(shape: &Shape<2>) -> Vec<Value> {
-    [shape.inverse, shape.covariance, shape.total]
-        .iter()
-        .flat_map(|[[xx, xy], [_, yy]]| [*xx, *xy, *yy])
-        .collect()
+pub(super) fn captures<'b>(shape: &Shape<'b, 2>) -> impl Scalars<'b> + use<'b> {
+    [shape.inverse, shape.covariance, shape.total].map(|[[xx, xy], [_, yy]]| [xx, xy, yy])
 }
 
-fn declare(b: &mut Builder) -> Shape<2> {
-    let [inverse, covariance, total] = [0, 3, 6].map(|at| {
-        let entries = [0, 1, 2].map(|i| b.param_f32(CAPTURES[at + i]));
-        symmetric(entries)
-    });
+fn declare(b: &Builder) -> Shape<'_, 2> {
+    let [inverse, covariance, total] =
+        CAPTURES.map(|names| symmetric(names.map(|name| b.float_param(name))));
     Shape {
         inverse,
         covariance,
@@ -67,47 +54,37 @@ fn declare(b: &mut Builder) -> Shape<2> {
     }
 }
 
-fn sums(b: &mut Builder, mode: Mode) -> Vec<Value> {
+fn sums(b: &Builder, mode: Mode) -> Vec<Float<'_>> {
     NAMES[..parts(mode)]
         .iter()
-        .map(|name| b.param_f32(format!("sum_{name}")))
+        .map(|name| b.float_param(format!("sum_{name}")))
         .collect()
 }
 
 /// The filtered kernel of one lattice point, the body of a fold over columns.
 fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
     let doc = "The filtered kernel of one lattice point.";
-    let mut b = Builder::new(format!("{}_kernel", kind.name()), doc);
+    let b = &Builder::new(format!("{}_kernel", kind.name()), doc);
     let fit = kind.fit();
-    let index = b.param("index", Type::U32);
-    let sums = sums(&mut b, mode);
-    let start = b.param_f32("start_x");
-    let (x, dy) = (b.param_f32("x"), b.param_f32("dy"));
-    let row = b.param("row_word", Type::U32);
-    let grid = Grid::declare(&mut b, tiles);
-    let shape = declare(&mut b);
-    let offset = b.float_u(index);
-    let place = b.add(start, offset);
-    let dx = b.sub(x, place);
-    let column = grid.word(&mut b, 0, place);
-    let hash = corner(&mut b, column, row);
-    let d = [dx, dy].map(|d| b.scale(d, 1.0 / fit.width));
-    let means = shape.inverse.map(|row| b.dot(&row, &d));
-    let distance = b.dot(&d, &means);
-    let exponent = b.scale(distance, -0.5);
-    let least = b.f32(-80.0);
-    let exponent = b.max(exponent, least);
-    let envelope = b.exp(exponent);
-    let weights = kind.weights(&mut b, hash);
+    let index = b.uint_param("index");
+    let sums = sums(b, mode);
+    let [start, x, dy] = ["start_x", "x", "dy"].map(|name| b.float_param(name));
+    let row = b.uint_param("row_word");
+    let grid = Grid::declare(b, tiles);
+    let shape = declare(b);
+    let place = start + index.to_float();
+    let hash = corner(grid.word(0, place), row);
+    let d = [x - place, dy].map(|d| d * (1.0 / fit.width));
+    let means = shape.inverse.map(|row| dot(row, d));
+    let envelope = (dot(d, means) * -0.5).max(-80.0).exp();
+    let weights = kind.weights(hash);
     let weight = match (kind, &weights[..]) {
         (Kind::Gradient, &[x, y]) => Weight::Direction([x, y]),
         _ => Weight::Number(weights[0]),
     };
-    let parts = fit.kernel(&mut b, weight, (d, means), &shape, derivatives(mode));
+    let parts = fit.kernel(weight, (d, means), &shape, derivatives(mode));
     for ((name, sum), part) in NAMES.into_iter().zip(sums).zip(parts) {
-        let part = b.mul(envelope, part);
-        let sum = b.add(sum, part);
-        b.result(name, sum);
+        b.result(name, sum + envelope * part);
     }
     b.finish(module)
 }
@@ -119,38 +96,28 @@ pub(super) const COUNTS: [f32; 2] = [2.0, 112.0];
 pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
     let kernel = kernel(module, kind, mode, tiles);
     let doc = "The filtered kernels of one lattice row.";
-    let mut b = Builder::new(format!("{}_row", kind.name()), doc);
-    let index = b.param("index", Type::U32);
-    let sums = sums(&mut b, mode);
-    let first = b.param_f32("start_y");
-    let (rows, columns) = (b.param_f32("rows"), b.param_f32("columns"));
-    let shear = b.param_f32("shear");
-    let grid = Grid::declare(&mut b, tiles);
-    let (x, y) = (b.param_f32("x"), b.param_f32("y"));
-    let shape = declare(&mut b);
-    let offset = b.float_u(index);
-    let place = b.add(first, offset);
-    let dy = b.sub(y, place);
-    let word = grid.word(&mut b, 1, place);
+    let b = &Builder::new(format!("{}_row", kind.name()), doc);
+    let index = b.uint_param("index");
+    let sums = sums(b, mode);
+    let [first, rows, columns, shear] =
+        ["start_y", "rows", "columns", "shear"].map(|name| b.float_param(name));
+    let grid = Grid::declare(b, tiles);
+    let [x, y] = ["x", "y"].map(|name| b.float_param(name));
+    let shape = declare(b);
+    let place = first + index.to_float();
+    let dy = y - place;
+    let word = grid.word(1, place);
     // The row's largest envelope lies where d_x = (T₁₂/T₂₂) d_y.
-    let lean = b.mul(shear, dy);
-    let centre = b.sub(x, lean);
+    let centre = x - shear * dy;
     // The kernels that count lie within an ellipse.
-    let share = b.div(dy, rows);
-    let square = b.square(share);
-    let beside = b.scale(square, -4.0);
-    let (one, zero) = (b.f32(1.0), b.f32(0.0));
-    let left = b.add(one, beside);
-    let left = b.max(left, zero);
-    let left = b.sqrt(left);
-    let columns = b.mul(columns, left);
-    let [columns, turns] = count(&mut b, columns, COUNTS);
-    let start = start(&mut b, centre, columns);
-    let mut captures = vec![start, x, dy, word];
-    captures.extend(grid.captures());
-    captures.extend(self::captures(&shape));
-    let sums = b.fold(&kernel, turns, &sums, &captures);
-    for (name, sum) in NAMES.into_iter().zip(sums) {
+    let left = (1.0 + (dy / rows).square() * -4.0).max(0.0).sqrt();
+    let (columns, turns) = count(columns * left, COUNTS);
+    let start = start(centre, columns);
+    let captures = ([start, x, dy], word, grid, captures(&shape));
+    for (name, sum) in NAMES
+        .into_iter()
+        .zip(b.fold(&kernel, turns, sums, captures))
+    {
         b.result(name, sum);
     }
     b.finish(module)

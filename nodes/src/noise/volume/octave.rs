@@ -2,14 +2,15 @@
 
 use super::kernel::{COUNTS, slice, window};
 use super::points::Points;
-use super::spread::{Inverse, Spread};
-use super::{Kind, NAMES, PAIRS, parts, place, quadrupole, quintic};
-use crate::noise::octave::Octave;
+use super::spread::Spread;
+use super::symmetric::{PAIRS, Shape, Symmetric};
+use super::{Kind, NAMES, parts, quadrupole, quintic};
 use crate::noise::perlin::HANDOVER;
 use crate::noise::remainder::{remainder, share};
+use crate::noise::sum::Octave;
 use crate::noise::sum::Octaves;
 use crate::noise::window::start;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, dot};
 use mipless_codegen::moments::Mode;
 
 /// Below this share of its amplitude an octave has faded, above the other it has not begun to.
@@ -22,72 +23,51 @@ const NEGLIGIBLE_LN: f32 = 11.5;
 pub(super) fn point(module: &mut Module, kind: Kind, octaves: Octaves) -> FunctionRef {
     let near = (kind == Kind::Quadrupole).then(|| quadrupole::Point::new(module, octaves.tiles()));
     let doc = "One more octave of the unfiltered noise in space.";
-    let mut builder = Builder::new("volume_octave", doc);
-    let b = &mut builder;
-    b.param("index", Type::U32);
-    let sum = b.param_f32("mean");
+    let b = &Builder::new("volume_octave", doc);
+    b.uint_param("index");
+    let sum = b.float_param("mean");
     let state = Octave::declare(b, octaves);
-    let points = Points::of(b, &state);
+    let points = Points::of(&state);
     let kernels = match near {
-        Some(near) => near.sum(b, points, state.fractions),
-        None => quintic::point(b, points, state.fractions),
+        Some(near) => near.sum(points, state.fractions),
+        None => quintic::point(points, state.fractions),
     };
-    let amplitude = b.scale(state.amplitude, kind.unit());
-    let part = b.mul(kernels, amplitude);
-    let sum = b.add(sum, part);
-    b.result("mean", sum);
+    b.result("mean", sum + kernels * (state.amplitude * kind.unit()));
     state.advance(b, octaves);
-    builder.finish(module)
+    b.finish(module)
 }
 
 /// The lattice points that a footprint needs: the extents (in cells) along z, along y at a z, and along
 /// x at a y and z, how far each leans, and how much of the octave there is. What needs more than can be
 /// summed fades.
-struct Reach {
-    extents: [Value; 3],
+struct Reach<'b> {
+    extents: [Float<'b>; 3],
     /// Along y by z, and along x by y and z.
-    leans: [Value; 3],
-    fade: Value,
+    leans: [Float<'b>; 3],
+    fade: Float<'b>,
 }
 
-impl Reach {
-    /// Kernels reach R² = ln F + 11.5, along z, along y at a z, along x at a y and z.
-    fn of(
-        b: &mut Builder,
-        kind: Kind,
-        (inverse, total): (&Inverse, &[Value; 6]),
-        energy: Value,
-    ) -> Self {
-        let (zero, one, tiny) = (b.f32(0.0), b.f32(1.0), b.f32(1e-12));
-        let left = b.max(energy, tiny);
-        let reach = b.ln(left);
-        let reach = b.offset(reach, NEGLIGIBLE_LN);
-        let reach = b.max(reach, one);
-        let reach = b.sqrt(reach);
-        let reach = b.scale(reach, 2.0 * kind.width());
-        let [p_xx, p_xy, p_xz, ..] = inverse.matrix;
-        let whole = b.mul(total[5], inverse.shrink);
-        let along_y = b.div(p_xx, whole);
-        let along_x = b.div(one, p_xx);
-        let mut most = zero;
-        let extents = [total[5], along_y, along_x].map(|variance| {
-            let size = b.sqrt(variance);
-            let needed = b.mul(size, reach);
-            most = b.max(most, needed);
-            needed
-        });
+impl<'b> Reach<'b> {
+    /// Kernels reach R² = ln F + 11.5, along z, along y at a z, along x at a y and z; `shrink` is
+    /// 1/det(I + S).
+    fn of(kind: Kind, shape: &Shape<'b>, shrink: Float<'b>, energy: Float<'b>) -> Self {
+        let left = energy.max(1e-12);
+        let reach = (left.ln() + NEGLIGIBLE_LN).max(1.0).sqrt() * (2.0 * kind.width());
+        let [p_xx, p_xy, p_xz, ..] = *shape.inverse;
+        let [.., t_yz, t_zz] = *shape.total;
+        let along_y = p_xx / (t_zz * shrink);
+        let along_x = 1.0 / p_xx;
+        let extents = [t_zz, along_y, along_x].map(|variance| variance.sqrt() * reach);
         // The octave fades to nothing before it is dropped.
-        let amplitude = b.sqrt(left);
-        let by_amplitude = share(b, amplitude, FADE[0], FADE[1]);
-        let by_reach = share(b, most, COUNTS[1], COUNTS[1] * 0.8);
-        let [lean_y, lean_z] = [p_xy, p_xz].map(|p| {
-            let lean = b.div(p, p_xx);
-            b.neg(lean)
-        });
+        let most = extents
+            .into_iter()
+            .fold(left.literal(0.0), |most, extent| most.max(extent));
+        let by_amplitude = share(left.sqrt(), FADE[0], FADE[1]);
+        let by_reach = share(most, COUNTS[1], COUNTS[1] * 0.8);
         Self {
             extents,
-            leans: [b.div(total[4], total[5]), lean_y, lean_z],
-            fade: b.mul(by_amplitude, by_reach),
+            leans: [t_yz / t_zz, -(p_xy / p_xx), -(p_xz / p_xx)],
+            fade: by_amplitude * by_reach,
         }
     }
 }
@@ -103,124 +83,103 @@ pub(super) fn filtered(
     let corner = (kind == Kind::Quintic).then(|| quintic::corner(module, parts, tiles));
     let slice = slice(module, kind, parts, tiles);
     let doc = "One more octave of the filtered noise in space.";
-    let mut builder = Builder::new("volume_octave", doc);
-    let b = &mut builder;
-    b.param("index", Type::U32);
-    let sums: Vec<Value> = NAMES[..parts]
+    let b = &Builder::new("volume_octave", doc);
+    b.uint_param("index");
+    let sums: Vec<Float<'_>> = NAMES[..parts]
         .iter()
-        .map(|name| b.param_f32(*name))
+        .map(|name| b.float_param(*name))
         .collect();
-    let rest = mode.spreads().then(|| b.param_f32("rest"));
+    let rest = mode.spreads().then(|| b.float_param("rest"));
     let state = Octave::declare(b, octaves);
-    let spread = Spread::declare(b).scaled(b, state.scale);
-    let inverse = spread.inverse(b);
-    let energy = kind.energy(b, &spread, &inverse);
-    let total: [Value; 6] = std::array::from_fn(|at| match at {
-        0 | 3 | 5 => b.offset(spread.covariance[at], 1.0),
-        _ => spread.covariance[at],
-    });
-    let reach = Reach::of(b, kind, (&inverse, &total), energy[0]);
-    let points = Points::of(b, &state);
-    let (zero, one, none) = (b.f32(0.0), b.f32(1.0), b.u32(0));
+    let spread = Spread::declare(b).scaled(state.scale);
+    let inverse = spread.inverse();
+    let energy = kind.energy(&spread, &inverse);
+    let shape = Shape {
+        inverse: inverse.matrix,
+        total: spread.covariance.raised(),
+    };
+    let points = Points::of(&state);
+    let zeros = vec![b.float(0.0); parts];
     let width = kind.width();
 
     // Narrow footprints act on the polynomials of the window.
     let (by_kernels, close) = match corner {
-        None => (one, None),
+        None => (b.float(1.0), None),
         Some(corner) => {
-            let size = spread.size(b);
             let [low, high] = HANDOVER.map(|size| size / width);
-            let by_kernels = share(b, size, low, high);
-            let by_corners = b.sub(one, by_kernels);
-            let is_near = b.lt(zero, by_corners);
-            let eight = b.u32(8);
-            let turns = b.select(is_near, eight, none);
-            let mut captures = points.captures();
-            captures.extend(state.fractions);
-            captures.extend(spread.covariance.map(|s| b.scale(s, width * width)));
-            let sums = b.fold(&corner, turns, &vec![zero; parts], &captures);
+            let by_kernels = share(spread.size(), low, high);
+            let by_corners = 1.0 - by_kernels;
+            let turns = by_corners.gt(0.0).select(8u32, 0u32);
+            let covariance = spread.covariance.map(|s| s * (width * width));
+            let captures = (points, state.fractions, covariance);
+            let sums = b.fold(&corner, turns, zeros.clone(), captures);
             (by_kernels, Some((by_corners, sums)))
         }
     };
-    let used = b.mul(by_kernels, reach.fade);
-    let is_used = b.lt(zero, used);
-    let [slices, turns] = window(b, reach.extents[0], None);
-    let turns = b.select(is_used, turns, none);
 
+    // Wider ones are summed over kernels.
+    let reach = Reach::of(kind, &shape, inverse.shrink, energy[0]);
+    let used = by_kernels * reach.fade;
+    let (slices, turns) = window(reach.extents[0], None);
+    let turns = used.gt(0.0).select(turns, 0);
     let [x, y, z] = state.fractions;
-    let first = start(b, z, slices);
-    let mut captures = reach.extents.to_vec();
-    captures.extend(reach.leans);
-    let dz = b.sub(z, first);
-    captures.extend([x, y, b.scale(dz, 1.0 / width)]);
-    captures.extend(points.moved(b, 2, first).captures());
-    captures.extend(inverse.matrix);
-    captures.extend(total);
-    let kernels = b.fold(&slice, turns, &vec![zero; parts], &captures);
+    let first = start(z, slices);
+    let place = [x, y, (z - first) * (1.0 / width)];
+    let captures = (
+        reach.extents,
+        reach.leans,
+        place,
+        points.moved(2, first),
+        shape,
+    );
+    let kernels = b.fold(&slice, turns, zeros, captures);
 
     // κ = κ₀/√det(I + S), and P on the sums.
-    let root = b.sqrt(inverse.shrink);
+    let root = inverse.shrink.sqrt();
     let weight = match kind {
         Kind::Quadrupole => root,
         // The offset is in units of the width.
-        Kind::Quintic => b.scale(root, width),
+        Kind::Quintic => root * width,
     };
-    let weight = b.mul(weight, used);
-    let totals = applied(b, &inverse, &kernels);
-    let amplitude = b.scale(state.amplitude, kind.unit());
-    let area = b.square(state.scale);
-    let factors = [one, state.scale, area].map(|factor| b.mul(factor, amplitude));
+    let weight = weight * used;
+    let totals = applied(&inverse.matrix, &kernels);
+    let amplitude = state.amplitude * kind.unit();
+    let area = state.scale.square();
+    let factors = [amplitude, state.scale * amplitude, area * amplitude];
     for (at, (name, sum)) in NAMES.into_iter().zip(sums).enumerate() {
         let order = match at {
             0 => 0,
             1..4 => 1,
             _ => 2,
         };
-        let finer = b.scale(weight, width.powi(-order));
-        let mut part = b.mul(finer, totals[at]);
+        let mut part = weight * width.powi(-order) * totals[at];
         if let Some((by_corners, sums)) = &close {
-            part = b.dot(&[finer, *by_corners], &[totals[at], sums[at]]);
+            part += *by_corners * sums[at];
         }
-        let part = b.mul(factors[order as usize], part);
-        let total = b.add(sum, part);
-        b.result(name, total);
-        if at + 1 == parts {
-            break;
-        }
+        b.result(name, sum + factors[order as usize] * part);
     }
     if let Some(rest) = rest {
         // Narrow footprints do not fade.
         let fade = match &close {
-            Some((by_corners, _)) => b.add(*by_corners, used),
+            Some((by_corners, _)) => *by_corners + used,
             None => used,
         };
-        let left = remainder(b, mode, energy, fade);
-        let power = b.square(state.amplitude);
-        let part = b.mul(power, left);
-        let rest = b.add(rest, part);
-        b.result("rest", rest);
+        let left = remainder(mode, energy, fade);
+        b.result("rest", rest + state.amplitude.square() * left);
     }
     state.advance(b, octaves);
-    builder.finish(module)
+    b.finish(module)
 }
 
 /// P on the sums: derivatives in units of the kernel's width.
-fn applied(b: &mut Builder, inverse: &Inverse, kernels: &[Value]) -> Vec<Value> {
-    let row = |i: usize| [0, 1, 2].map(|j| inverse.matrix[place(i, j)]);
+fn applied<'b>(inverse: &Symmetric<'b>, kernels: &[Float<'b>]) -> Vec<Float<'b>> {
     let mut totals = vec![kernels[0]];
-    if let Some(sums) = kernels.get(1..4) {
-        for i in 0..3 {
-            totals.push(b.dot(&row(i), sums));
-        }
+    if let Some(&[x, y, z]) = kernels.get(1..4) {
+        totals.extend(inverse.times([x, y, z]));
     }
     if let Some(sums) = kernels.get(4..10) {
-        for [i, j] in PAIRS {
-            let inner = [0, 1, 2].map(|k| {
-                let column = [0, 1, 2].map(|l| sums[place(k, l)]);
-                b.dot(&column, &row(j))
-            });
-            totals.push(b.dot(&row(i), &inner));
-        }
+        let sums = Symmetric(sums.try_into().expect("six numbers"));
+        totals.extend(PAIRS.map(|[i, j]| dot(inverse.row(i), sums.times(inverse.row(j)))));
     }
     totals
 }

@@ -4,7 +4,7 @@
 //! Measured over 4 × 60 000 places (moments) and 1000 footprints of 400 samples for each size from
 //! 0.02 to 1 cells, at a jitter of 1; smaller jitters take the same curves.
 
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::Float;
 
 /// Of which point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,38 +80,23 @@ impl Worley {
         [sums[0], sums[1] * sums[1]]
     }
 
-    /// 1/(1 + (s/s₀)^p) of a size.
-    fn falloff(b: &mut Builder, size: Value, s0: f32, power: f32) -> Value {
-        let (least, one) = (b.f32(1e-6), b.f32(1.0));
-        let size = b.max(size, least);
-        let ratio = b.scale(size, 1.0 / s0);
-        let log = b.ln(ratio);
-        let log = b.scale(log, power);
-        let log = b.clamp(log, -80.0, 40.0);
-        let raised = b.exp(log);
-        let below = b.offset(raised, 1.0);
-        b.div(one, below)
-    }
-
     /// The slopes of the true average and of the true variance on those of the taps; `size` is half
     /// the sum of the footprint's axes, in cells.
-    pub(super) fn slopes(self, b: &mut Builder, size: Value) -> (Value, Value) {
+    pub(super) fn slopes(self, size: Float<'_>) -> [Float<'_>; 2] {
         if self.solid {
-            let slope = Self::falloff(b, size, 0.76, 2.2);
-            return (slope, slope);
+            return [falloff(size, 0.76, 2.2); 2];
         }
         let [s0, power] = match self.output {
             Output::First => [0.465, 5.57],
             Output::Second => [0.582, 3.49],
             Output::Difference => [0.33, 5.0],
         };
-        let slope = Self::falloff(b, size, s0, power);
-        (slope, Self::falloff(b, size, 0.22, 3.0))
+        [falloff(size, s0, power), falloff(size, 0.22, 3.0)]
     }
 
     /// The share of the variance that the average over a footprint has lost, on average:
     /// t/(1 + t), t = γs + αs² + βs⁴.
-    pub(super) fn lost(self, b: &mut Builder, size: Value) -> Value {
+    pub(super) fn lost(self, size: Float<'_>) -> Float<'_> {
         let [gamma, alpha, beta] = match (self.solid, self.output) {
             (true, Output::Difference) => [3.2, 12.0, 0.0],
             (true, _) => [2.2, 8.0, 0.0],
@@ -119,15 +104,15 @@ impl Worley {
             (false, Output::Second) => [0.0, 19.0, 17.0],
             (false, Output::Difference) => [0.0, 60.0, 20.0],
         };
-        let limit = b.f32(1e4);
-        let size = b.min(size, limit);
-        let square = b.square(size);
-        let t = b.scale(square, beta);
-        let t = b.offset(t, alpha);
-        let t = b.mul(t, square);
-        let first = b.scale(size, gamma);
-        let t = b.add(t, first);
-        let below = b.offset(t, 1.0);
-        b.div(t, below)
+        let size = size.min(1e4);
+        let square = size.square();
+        let t = (square * beta + alpha) * square + size * gamma;
+        t / (t + 1.0)
     }
+}
+
+/// 1/(1 + (s/s₀)^p) of a size.
+fn falloff(size: Float<'_>, s0: f32, power: f32) -> Float<'_> {
+    let log = (size.max(1e-6) * (1.0 / s0)).ln() * power;
+    1.0 / (log.clamp(-80.0, 40.0).exp() + 1.0)
 }

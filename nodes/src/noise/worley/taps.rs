@@ -1,8 +1,9 @@
 //! The search for the points that are nearest to several places at once.
 
 use super::shape::{Output, Worley};
-use crate::noise::cell::number;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use crate::noise::cell::passed::{Passed, passed};
+use crate::noise::cell::{hash, row_word, uniform};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Uint, Vec2};
 
 /// x, y, weight: a unit Gaussian's integral to degree 5 (Stroud, E₂^{r²} 5-1).
 pub(super) const NODES: [[f32; 3]; 7] = [
@@ -18,162 +19,186 @@ pub(super) const NODES: [[f32; 3]; 7] = [
 /// A squared distance beyond all.
 const FAR: f32 = 1e6;
 
-/// The cell that a window of `count` (a float) cells around `x` starts at.
-pub(super) fn window(b: &mut Builder, x: Value, count: Value) -> Value {
-    let half = b.scale(count, -0.5);
-    let start = b.add(x, half);
-    let start = b.offset(start, 0.5);
-    b.floor(start)
+/// What is known of the points nearest to a place: as much as the noise reads.
+#[derive(Clone, Copy)]
+pub(super) struct Nearest<'b> {
+    /// The squared distances of the nearest and of the second.
+    first: Float<'b>,
+    second: Option<Float<'b>>,
+    /// Their numbers.
+    value: Option<Float<'b>>,
+    other: Option<Float<'b>>,
 }
 
-/// What is known of the nearest points of a place: squared distances of the nearest and, where it
-/// matters, the second, then their numbers.
-fn names(worley: Worley) -> &'static [&'static str] {
-    match (worley.solid, worley.output) {
-        (false, Output::First) => &["first"],
-        (false, _) => &["first", "second"],
-        (true, Output::First) => &["first", "value"],
-        (true, _) => &["first", "second", "value", "other"],
+impl<'b> Scalars<'b> for Nearest<'b> {
+    fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
+        (self.first, self.second, self.value, self.other).each(visit);
+    }
+
+    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
+        let (first, second, value, other) =
+            (self.first, self.second, self.value, self.other).replaced(next);
+        Self {
+            first,
+            second,
+            value,
+            other,
+        }
     }
 }
 
-/// The state of a place before any point.
-pub(super) fn init(b: &mut Builder, worley: Worley) -> Vec<Value> {
-    let (far, zero) = (b.f32(FAR), b.f32(0.0));
-    let distances = if worley.output == Output::First { 1 } else { 2 };
-    (0..names(worley).len())
-        .map(|i| if i < distances { far } else { zero })
+impl<'b> Nearest<'b> {
+    /// Before any point.
+    pub(super) fn none(b: &'b Builder, worley: Worley) -> Self {
+        let (far, zero) = (b.float(FAR), b.float(0.0));
+        let two = worley.output != Output::First;
+        Self {
+            first: far,
+            second: two.then_some(far),
+            value: worley.solid.then_some(zero),
+            other: (worley.solid && two).then_some(zero),
+        }
+    }
+
+    /// The parameters of so many places.
+    fn declare(b: &'b Builder, worley: Worley, count: usize) -> Vec<Self> {
+        let named = |tap: usize| {
+            let none = Self::none(b, worley);
+            let mut names = none.names().into_iter();
+            none.replaced(&mut || {
+                let name = names.next().expect("a name for each part");
+                b.float_param(format!("{name}_{tap}")).into()
+            })
+        };
+        (0..count).map(named).collect()
+    }
+
+    fn names(&self) -> Vec<&'static str> {
+        let parts = [
+            ("first", Some(self.first)),
+            ("second", self.second),
+            ("value", self.value),
+            ("other", self.other),
+        ];
+        let known = parts.into_iter().filter(|(_, part)| part.is_some());
+        known.map(|(name, _)| name).collect()
+    }
+
+    /// Gives it as the results of a place.
+    fn results(&self, b: &'b Builder, tap: usize) {
+        for (name, part) in self.names().into_iter().zip(self.scalars()) {
+            b.result(format!("{name}_{tap}"), part);
+        }
+    }
+
+    /// The value at the place.
+    pub(super) fn value(&self, worley: Worley) -> Float<'b> {
+        let of = |number: Option<Float<'b>>, square: Option<Float<'b>>| match worley.solid {
+            true => number.expect("a solid has numbers"),
+            false => square.expect("distances that are read are kept").sqrt(),
+        };
+        let first = || of(self.value, Some(self.first));
+        let second = || of(self.other, self.second);
+        match worley.output {
+            Output::First => first(),
+            Output::Second => second(),
+            Output::Difference => second() - first(),
+        }
+    }
+
+    /// One more point: its squared distance and its number.
+    fn nearer(self, q: Float<'b>, number: Float<'b>) -> Self {
+        let won = q.lt(self.first);
+        let second = |second: Float<'b>| second.min(self.first.max(q));
+        let other = || {
+            let placed = q.lt(self.second?).select(number, self.other?);
+            Some(won.select(self.value?, placed))
+        };
+        Self {
+            first: self.first.min(q),
+            second: self.second.map(second),
+            value: self.value.map(|value| won.select(number, value)),
+            other: other(),
+        }
+    }
+}
+
+/// The parameters of so many places.
+fn declared_places(b: &Builder, count: usize) -> Vec<Vec2<'_>> {
+    let places = (0..count).map(|tap| [format!("x_{tap}"), format!("y_{tap}")]);
+    places
+        .map(|names| Vec2(names.map(|name| b.float_param(name))))
         .collect()
 }
 
-/// The value at a place.
-pub(super) fn value(b: &mut Builder, worley: Worley, tap: &[Value]) -> Value {
-    match (worley.solid, worley.output) {
-        (false, Output::First) => b.sqrt(tap[0]),
-        (false, Output::Second) => b.sqrt(tap[1]),
-        (false, Output::Difference) => {
-            let (first, second) = (b.sqrt(tap[0]), b.sqrt(tap[1]));
-            b.sub(second, first)
-        }
-        (true, Output::First) => tap[1],
-        (true, Output::Second) => tap[3],
-        (true, Output::Difference) => b.sub(tap[3], tap[2]),
+passed! {
+    /// What the cells of a row have in common.
+    struct Row {
+        start_x: Float,
+        place_y: Float,
+        cell_x: Int,
+        row: Int,
+        seed: Uint,
     }
-}
-
-/// One more point for a place.
-fn nearer(b: &mut Builder, worley: Worley, tap: &[Value], q: Value, v: Value) -> Vec<Value> {
-    let first = b.min(tap[0], q);
-    if worley.output == Output::First {
-        let mut next = vec![first];
-        if worley.solid {
-            let won = b.lt(q, tap[0]);
-            next.push(b.select(won, v, tap[1]));
-        }
-        return next;
-    }
-    let loser = b.max(tap[0], q);
-    let second = b.min(tap[1], loser);
-    let mut next = vec![first, second];
-    if worley.solid {
-        let won = b.lt(q, tap[0]);
-        let placed = b.lt(q, tap[1]);
-        let other = b.select(placed, v, tap[3]);
-        next.push(b.select(won, v, tap[2]));
-        next.push(b.select(won, tap[2], other));
-    }
-    next
 }
 
 /// The point of one cell, the body of a fold over columns.
 fn column(module: &mut Module, worley: Worley, count: usize) -> FunctionRef {
-    let mut b = Builder::new("worley_column", "The point of one cell.");
-    let index = b.param("index", Type::U32);
-    let names = names(worley);
-    let state: Vec<Value> = (0..count)
-        .flat_map(|tap| names.iter().map(move |name| format!("{name}_{tap}")))
-        .map(|name| b.param_f32(name))
-        .collect();
-    let start = b.param_f32("start_x");
-    let place_y = b.param_f32("place_y");
-    let cell = b.param("cell_x", Type::I32);
-    let row = b.param("row", Type::I32);
-    let seed = b.param("seed", Type::U32);
-    let places: Vec<[Value; 2]> = (0..count)
-        .map(|tap| {
-            [
-                b.param_f32(format!("x_{tap}")),
-                b.param_f32(format!("y_{tap}")),
-            ]
-        })
-        .collect();
-    let offset = b.float_u(index);
-    let place_x = b.add(start, offset);
-    let whole = b.trunc_i(place_x);
-    let column = b.add_i(cell, whole);
-    let (_, hash) = number(&mut b, column, row, seed, worley.period);
-    let mask = b.u32(0xffff);
-    let by = b.u32(16);
-    let (low, high) = (b.and_u(hash, mask), b.shr_u(hash, by));
-    let point = [(low, place_x), (high, place_y)].map(|(bits, place)| {
-        let share = b.float_u(bits);
-        let share = b.scale(share, 1.0 / 65536.0);
-        let moved = b.offset(share, -0.5);
-        let moved = b.scale(moved, worley.jitter);
-        let moved = b.offset(moved, 0.5);
-        b.add(place, moved)
+    let b = &Builder::new("worley_column", "The point of one cell.");
+    let index = b.uint_param("index");
+    let nearest = Nearest::declare(b, worley, count);
+    let row = Row::declare(b);
+    let places = declared_places(b, count);
+    let place_x = row.start_x + index.to_float();
+    let word = row_word(row.row, row.seed, worley.period);
+    let hash = hash(row.cell_x + place_x.to_int(), word, worley.period);
+    let point = [(hash & 0xffff, place_x), (hash >> 16, row.place_y)].map(|(bits, place)| {
+        let share = bits.to_float() * (1.0 / 65536.0);
+        place + ((share + -0.5) * worley.jitter + 0.5)
     });
-    let value = if worley.solid {
-        let mixed = b.u32(0x9e37_79b9);
-        let hash = b.xor_u(hash, mixed);
-        let hash = b.scramble(hash);
-        let by = b.u32(8);
-        let leading = b.shr_u(hash, by);
-        let number = b.float_u(leading);
-        b.scale(number, 1.0 / (1u32 << 24) as f32)
+    let number = if worley.solid {
+        uniform((hash ^ 0x9e37_79b9).scramble())
     } else {
-        b.f32(0.0)
+        b.float(0.0)
     };
-    for (tap, (state, place)) in state.chunks(names.len()).zip(&places).enumerate() {
-        let (dx, dy) = (b.sub(place[0], point[0]), b.sub(place[1], point[1]));
-        let q = b.dot(&[dx, dy], &[dx, dy]);
-        for (name, next) in names.iter().zip(nearer(&mut b, worley, state, q, value)) {
-            b.result(format!("{name}_{tap}"), next);
-        }
+    for (tap, (nearest, place)) in nearest.into_iter().zip(places).enumerate() {
+        let square = (place - Vec2(point)).norm2();
+        nearest.nearer(square, number).results(b, tap);
     }
     b.finish(module)
+}
+
+passed! {
+    /// What all rows have in common.
+    pub(super) struct Rows {
+        start_y: Float,
+        start_x: Float,
+        columns: Uint,
+        cell_x: Int,
+        cell_y: Int,
+        seed: Uint,
+    }
 }
 
 /// The points of one row of cells, the body of a fold.
 pub(super) fn row(module: &mut Module, worley: Worley, count: usize) -> FunctionRef {
     let column = column(module, worley, count);
-    let mut b = Builder::new("worley_row", "The points of one row of cells.");
-    let index = b.param("index", Type::U32);
-    let names: Vec<String> = (0..count)
-        .flat_map(|tap| {
-            names(worley)
-                .iter()
-                .map(move |name| format!("{name}_{tap}"))
-        })
-        .collect();
-    let state: Vec<Value> = names.iter().map(|name| b.param_f32(name.clone())).collect();
-    let (start_y, start_x) = (b.param_f32("start_y"), b.param_f32("start_x"));
-    let columns = b.param("columns", Type::U32);
-    let cells = [b.param("cell_x", Type::I32), b.param("cell_y", Type::I32)];
-    let seed = b.param("seed", Type::U32);
-    let places: Vec<Value> = (0..count)
-        .flat_map(|tap| [format!("x_{tap}"), format!("y_{tap}")])
-        .map(|name| b.param_f32(name))
-        .collect();
-    let offset = b.float_u(index);
-    let place = b.add(start_y, offset);
-    let whole = b.trunc_i(place);
-    let row = b.add_i(cells[1], whole);
-    let mut captures = vec![start_x, place, cells[0], row, seed];
-    captures.extend(places);
-    let state = b.fold(&column, columns, &state, &captures);
-    for (name, value) in names.into_iter().zip(state) {
-        b.result(name, value);
+    let b = &Builder::new("worley_row", "The points of one row of cells.");
+    let index = b.uint_param("index");
+    let nearest = Nearest::declare(b, worley, count);
+    let rows = Rows::declare(b);
+    let places = declared_places(b, count);
+    let place_y = rows.start_y + index.to_float();
+    let row = Row {
+        start_x: rows.start_x,
+        place_y,
+        cell_x: rows.cell_x,
+        row: rows.cell_y + place_y.to_int(),
+        seed: rows.seed,
+    };
+    let nearest = b.fold(&column, rows.columns, nearest, (row, places));
+    for (tap, nearest) in nearest.iter().enumerate() {
+        nearest.results(b, tap);
     }
     b.finish(module)
 }

@@ -14,7 +14,7 @@ use super::rows::{Figure, Shape};
 use super::series::{Harmonics, of_size};
 use super::{Tiling, highest};
 use crate::pattern::region::Outline;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Bool, Float};
 use std::f64::consts::{PI, SQRT_2};
 
 /// The least standard deviation of the minor axis for which there are enough harmonics, in cells: half of
@@ -26,12 +26,9 @@ const SHARE: f64 = 4.0;
 
 /// Lines of a width that is given in cells, at least 0. The origin is in the middle of a row, at the side
 /// of a cell.
-pub(crate) fn lines(b: &mut Builder, thickness: Value) -> Tiling {
-    let (zero, half) = (b.f32(0.0), b.f32(0.5));
-    let reach = b.scale(thickness, std::f32::consts::FRAC_1_SQRT_2);
-    let open = b.sub(half, reach);
-    let size = b.max(open, zero);
-    let known = b.as_constant(size);
+pub(crate) fn lines(thickness: Float<'_>) -> Tiling<'_> {
+    let size = (0.5 - thickness * std::f32::consts::FRAC_1_SQRT_2).max(0.0);
+    let known = size.as_constant();
     let diamond = outline(&[[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]);
     // Around the middle of the circle that touches the sides, which is as far from the border.
     let inner = SQRT_2 - 1.0;
@@ -50,7 +47,7 @@ pub(crate) fn lines(b: &mut Builder, thickness: Value) -> Tiling {
         extent: 0.5,
         harmonics: harmonics(lattice, known),
         thinnest: THINNEST,
-        inside: Box::new(move |b, place| is_open(b, place, size)),
+        inside: Box::new(move |place| is_open(place, size)),
         holes: true,
     }
 }
@@ -97,21 +94,11 @@ fn harmonics(lattice: Lattice, known: Option<f32>) -> Harmonics {
 
 /// Whether a place lies in the open. With x and y from the middle of its cell, it is ||x| − |y||/√2 away
 /// from a diagonal.
-fn is_open(b: &mut Builder, [x, y]: [Value; 2], size: Value) -> Value {
-    let half = b.f32(0.5);
-    let raised = b.add(y, half);
-    let row = b.floor(raised);
-    let up = b.sub(y, row);
-    let turns = b.scale(row, 0.5);
-    let even = b.floor(turns);
-    let shift = b.sub(turns, even);
-    let from = b.sub(x, shift);
-    let left = b.floor(from);
-    let across = b.sub(from, left);
-    let across = b.sub(across, half);
-    let (across, up) = (b.abs(across), b.abs(up));
-    let difference = b.sub(across, up);
-    let distance = b.abs(difference);
-    let line = b.sub(half, size);
-    b.lt(line, distance)
+fn is_open<'b>([x, y]: [Float<'b>; 2], size: Float<'b>) -> Bool<'b> {
+    let row = (y + 0.5).floor();
+    let up = y - row;
+    let turns = row * 0.5;
+    let from = x - (turns - turns.floor());
+    let across = from - from.floor() - 0.5;
+    (across.abs() - up.abs()).abs().gt(0.5 - size)
 }

@@ -1,11 +1,13 @@
 //! The figures of a tiling one by one: rows that are within reach of the footprint, and of each row
 //! the columns.
 
-use super::{REACH, Tiling};
+use super::REACH;
+use super::lattice::Lattice;
+use crate::pattern::disc;
 use crate::pattern::measure::{Measure, NAMES};
-use crate::pattern::region::{Outline, Whitening, disc_function};
+use crate::pattern::region::{Outline, Whitening};
 use crate::pattern::touch::Touch;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Scalar, Scalars, Sym2, Uint};
 
 /// The form of a figure.
 #[derive(Clone, Debug)]
@@ -30,35 +32,43 @@ pub(super) struct Figure {
 
 /// The size of figures inside a function.
 #[derive(Clone, Copy)]
-pub(super) enum Size {
+pub(super) enum Size<'b> {
     /// Known when the graph is compiled.
     Known(f32),
     /// A parameter.
-    Live(Value),
+    Live(Float<'b>),
 }
 
-impl Size {
+impl<'b> Size<'b> {
     /// The size, or the next parameter.
-    pub(super) fn declare(b: &mut Builder, known: Option<f32>) -> Self {
+    pub(super) fn declare(b: &'b Builder, known: Option<f32>) -> Self {
         match known {
             Some(size) => Self::Known(size),
-            None => Self::Live(b.param_f32("size")),
-        }
-    }
-
-    /// The number that a function needs for [`Self::declare`].
-    pub(super) fn captures(self) -> Option<Value> {
-        match self {
-            Self::Known(_) => None,
-            Self::Live(size) => Some(size),
+            None => Self::Live(b.float_param("size")),
         }
     }
 
     /// What is so long at size 1.
-    pub(super) fn times(self, b: &mut Builder, length: f64) -> Value {
+    pub(super) fn times(self, b: &'b Builder, length: f64) -> Float<'b> {
         match self {
-            Self::Known(size) => b.f32((f64::from(size) * length) as f32),
-            Self::Live(size) => b.scale(size, length as f32),
+            Self::Known(size) => b.float((f64::from(size) * length) as f32),
+            Self::Live(size) => size * length as f32,
+        }
+    }
+}
+
+/// What a function takes for [`Size::declare`].
+impl<'b> Scalars<'b> for Size<'b> {
+    fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
+        if let Self::Live(size) = self {
+            size.each(visit);
+        }
+    }
+
+    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
+        match self {
+            Self::Known(size) => Self::Known(size),
+            Self::Live(size) => Self::Live(size.replaced(next)),
         }
     }
 }
@@ -66,50 +76,38 @@ impl Size {
 /// The figures of one more row, the body of a fold.
 pub(super) fn row_function(
     module: &mut Module,
-    tiling: &Tiling,
+    lattice: Lattice,
+    figures: &[Figure],
     known: Option<f32>,
 ) -> FunctionRef {
-    let lattice = tiling.lattice;
-    let functions: Vec<FunctionRef> = (tiling.figures.iter())
+    let functions: Vec<FunctionRef> = (figures.iter())
         .map(|figure| figure_function(module, &figure.shape, known))
         .collect();
-    let mut b = Builder::new("tiling_row", "One more row of a tiling.");
-    let index = b.param("index", Type::U32);
-    let state = NAMES.map(|name| b.param_f32(name));
-    let place = [b.param_f32("x"), b.param_f32("y")];
-    let [first, slope, sd] = ["first", "slope", "sd"].map(|name| b.param_f32(name));
-    let whitening = Whitening::declare(&mut b);
-    let covariance = ["xx", "xy", "yy"].map(|name| b.param_f32(name));
-    let size = Size::declare(&mut b, known);
-    let number = b.float_u(index);
-    let row = b.add(first, number);
-    let height = b.scale(row, lattice.row() as f32);
-    let height = b.offset(height, lattice.origin() as f32);
-    let up = b.sub(height, place[1]);
-    let mut from = b.offset(place[0], -lattice.origin() as f32);
+    let b = &Builder::new("tiling_row", "One more row of a tiling.");
+    let index = b.uint_param("index");
+    let mut sums = NAMES.map(|name| b.float_param(name));
+    let [x, y] = ["x", "y"].map(|name| b.float_param(name));
+    let [first, slope, sd] = ["first", "slope", "sd"].map(|name| b.float_param(name));
+    let whitening = Whitening::declare(b);
+    let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+    let size = Size::declare(b, known);
+    let row = first + index.to_float();
+    let up = row * lattice.row() as f32 + lattice.origin() as f32 - y;
+    let mut from = x + -lattice.origin() as f32;
     if lattice.alternates() {
         // Odd rows are shifted by half a cell.
-        let half = b.scale(row, 0.5);
-        let even = b.floor(half);
-        let shift = b.sub(half, even);
-        from = b.sub(from, shift);
+        let half = row * 0.5;
+        from -= half - half.floor();
     }
-    let mut sums = state;
-    for (figure, function) in tiling.figures.iter().zip(&functions) {
+    for (figure, function) in figures.iter().zip(&functions) {
         let [dx, dy] = figure.at.map(|x| x as f32);
-        let rise = size.times(&mut b, figure.rise);
-        let up = b.offset(up, dy);
-        let up = b.add(up, rise);
-        let from = b.offset(from, -dx);
-        let reach = (size, figure.reach);
-        let [start, count] = columns(&mut b, (from, up), reach, (covariance, slope, sd));
-        let mut captures = vec![start, from, up];
-        captures.extend(whitening.captures());
-        captures.extend(covariance);
-        captures.extend(size.captures());
-        let zero = b.f32(0.0);
-        let parts = b.fold(function, count, &[zero; 6], &captures);
-        sums = std::array::from_fn(|i| b.add(sums[i], parts[i]));
+        let up = up + dy + size.times(b, figure.rise);
+        let from = from + -dx;
+        let reach = size.times(b, figure.reach);
+        let (start, count) = columns((from, up), reach, (covariance, slope, sd));
+        let captures = ([start, from, up], whitening, covariance, size);
+        let parts = b.fold(function, count, [b.float(0.0); 6], captures);
+        sums = std::array::from_fn(|i| sums[i] + parts[i]);
     }
     for (name, sum) in NAMES.into_iter().zip(sums) {
         b.result(name, sum);
@@ -117,84 +115,59 @@ pub(super) fn row_function(
     b.finish(module)
 }
 
-/// The first column of a row and how many, as u32: those around the line that the footprint follows,
-/// or all that it covers, if that is less. The row is higher than the mean by `up`, and the mean lies
-/// at `from`.
-fn columns(
-    b: &mut Builder,
-    (from, up): (Value, Value),
-    (size, reach): (Size, f64),
-    ([xx, xy, _], slope, sd): ([Value; 3], Value, Value),
-) -> [Value; 2] {
-    let zero = b.f32(0.0);
-    let along = b.mul(slope, xy);
-    let left = b.sub(xx, along);
-    let left = b.max(left, zero);
-    let left = b.sqrt(left);
-    let left = b.scale(left, REACH);
-    let steep = b.abs(slope);
-    let steep = b.offset(steep, 1.0);
-    let reach = size.times(b, reach);
-    let steep = b.mul(steep, reach);
-    let narrow = b.add(left, steep);
-    let wide = b.sqrt(xx);
-    let wide = b.scale(wide, REACH);
-    let wide = b.add(wide, reach);
-    let follows = b.lt(narrow, wide);
-    let extent = b.min(narrow, wide);
-    let limit = b.scale(sd, REACH);
-    let back = b.neg(limit);
-    let shift = b.max(up, back);
-    let shift = b.min(shift, limit);
-    let shift = b.mul(slope, shift);
-    let shift = b.select(follows, shift, zero);
-    let middle = b.add(from, shift);
-    let (low, high) = (b.sub(middle, extent), b.add(middle, extent));
-    let (below, last) = (b.floor(low), b.floor(high));
-    let start = b.offset(below, 1.0);
-    let count = b.sub(last, below);
-    let count = b.clamp(count, 0.0, 16.0);
-    let count = b.trunc_i(count);
-    [start, b.cast_u(count)]
+/// The first column of a row and how many: those around the line that the footprint follows, or all
+/// that it covers, if that is less. The row is higher than the mean by `up`, and the mean lies at
+/// `from`; a figure is within `reach` of its site.
+fn columns<'b>(
+    (from, up): (Float<'b>, Float<'b>),
+    reach: Float<'b>,
+    (covariance, slope, sd): (Sym2<'b>, Float<'b>, Float<'b>),
+) -> (Float<'b>, Uint<'b>) {
+    let [xx, xy, _] = *covariance;
+    let left = (xx - slope * xy).max(0.0).sqrt() * REACH;
+    let narrow = left + (slope.abs() + 1.0) * reach;
+    let wide = xx.sqrt() * REACH + reach;
+    let extent = narrow.min(wide);
+    let limit = sd * REACH;
+    let shift = slope * up.clamp(-limit, limit);
+    let middle = from + narrow.lt(wide).select(shift, 0.0);
+    let below = (middle - extent).floor();
+    let last = (middle + extent).floor();
+    let count = (last - below).clamp(0.0, 16.0);
+    (below + 1.0, count.to_int().to_uint())
 }
 
 /// One more figure of a row, the body of a fold.
 fn figure_function(module: &mut Module, shape: &Shape, known: Option<f32>) -> FunctionRef {
     let own = match shape {
         Shape::Polygon(outline) => outline.function(module),
-        Shape::Disc(_) => disc_function(module),
+        Shape::Disc(_) => disc::function(module),
     };
-    let mut b = Builder::new("tiling_figure", "One more figure of a row.");
-    let index = b.param("index", Type::U32);
-    let state = NAMES.map(|name| b.param_f32(name));
-    let [start, from, up] = ["start", "from", "up"].map(|name| b.param_f32(name));
-    let whitening = Whitening::declare(&mut b);
-    let covariance = ["xx", "xy", "yy"].map(|name| b.param_f32(name));
-    let size = Size::declare(&mut b, known);
-    let number = b.float_u(index);
-    let column = b.add(start, number);
-    let across = b.sub(column, from);
-    let measure: Measure = match shape {
+    let b = &Builder::new("tiling_figure", "One more figure of a row.");
+    let index = b.uint_param("index");
+    let state = NAMES.map(|name| b.float_param(name));
+    let [start, from, up] = ["start", "from", "up"].map(|name| b.float_param(name));
+    let whitening = Whitening::declare(b);
+    let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+    let size = Size::declare(b, known);
+    let across = start + index.to_float() - from;
+    let measure: Measure<'_> = match shape {
         Shape::Polygon(outline) => {
-            let (zero, one) = (b.f32(0.0), size.times(&mut b, 1.0));
+            let (zero, one) = (b.float(0.0), size.times(b, 1.0));
             let axes = [[across, up], [one, zero], [zero, one], [zero, zero]];
             let edges = outline.distances();
-            let edges = edges.map(|distance| size.times(&mut b, f64::from(distance)));
-            let square = b.dot(&[across, up], &[across, up]);
-            let touch = Touch::between(&mut b, square, edges, covariance);
-            outline.measure(&mut b, &own, (&whitening, touch), axes)
+            let edges = edges.map(|distance| size.times(b, f64::from(distance)));
+            let touch = Touch::between(across * across + up * up, edges, covariance);
+            outline.measure(&own, (&whitening, touch), axes)
         }
         Shape::Disc(radius) => {
-            let radius = size.times(&mut b, *radius);
-            let mut arguments = vec![across, up, radius];
-            arguments.extend(covariance);
-            let results = b.call(&own, &arguments);
-            std::array::from_fn(|i| results[i])
+            let radius = size.times(b, *radius);
+            let results = b.call(&own, ([across, up, radius], covariance));
+            results.try_into().expect("a measure")
         }
     };
     for ((name, sum), part) in NAMES.into_iter().zip(state).zip(measure) {
-        let sum = b.add(sum, part);
-        b.result(name, sum);
+        b.result(name, sum + part);
     }
     b.finish(module)
 }

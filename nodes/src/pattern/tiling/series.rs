@@ -1,10 +1,10 @@
 //! All figures of a tiling at once: the Fourier series of the lattice, damped by the footprint.
 
 use super::rows::Size;
-use crate::pattern::harmonics::nearest;
 use crate::pattern::measure::NAMES;
-use mipless_codegen::ir::{Builder, FunctionRef, Module, Type, Value};
-use std::f64::consts::{PI, TAU};
+use crate::pattern::waves::{damping, derivatives, nearest, phase};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Sym2, Uint, Vec2};
+use std::f64::consts::PI;
 
 /// What a series leaves out of 1 by each harmonic that is damped away.
 const NEGLIGIBLE: f64 = 5e-5;
@@ -44,13 +44,10 @@ impl Harmonics {
     }
 
     /// The share of the plane that figures of a size cover.
-    pub(super) fn mean(&self, b: &mut Builder, size: Size) -> Value {
+    pub(super) fn mean<'b>(&self, b: &'b Builder, size: Size<'b>) -> Float<'b> {
         match size {
-            Size::Known(size) => b.f32((self.mean * f64::from(size * size)) as f32),
-            Size::Live(size) => {
-                let square = b.square(size);
-                b.scale(square, self.mean as f32)
-            }
+            Size::Known(size) => b.float((self.mean * f64::from(size * size)) as f32),
+            Size::Live(size) => size.square() * self.mean as f32,
         }
     }
 
@@ -81,52 +78,26 @@ impl Harmonics {
             Rows::OfSize(rows) => (rows.iter().flatten().map(|&x| x as f32).collect(), 4),
         };
         let table = module.table("harmonics", numbers);
-        let mut b = Builder::new("tiling_harmonic", "One more harmonic of a tiling.");
-        let index = b.param("index", Type::U32);
-        let state = NAMES.map(|name| b.param_f32(name));
-        let place = [b.param_f32("x"), b.param_f32("y")];
-        let [xx, xy, yy] = ["xx", "xy", "yy"].map(|name| b.param_f32(name));
-        let size = matches!(self.rows, Rows::OfSize(_)).then(|| b.param_f32("size"));
-        let stride = b.u32(width);
-        let first = b.mul_u(index, stride);
-        let load = |b: &mut Builder, i: u32| {
-            let shift = b.u32(i);
-            let at = b.add_u(first, shift);
-            b.load(table, at)
-        };
-        let [k, l, amplitude] = [0, 1, 2].map(|i| load(&mut b, i));
+        let b = &Builder::new("tiling_harmonic", "One more harmonic of a tiling.");
+        let index = b.uint_param("index");
+        let state = NAMES.map(|name| b.float_param(name));
+        let place = Vec2(["x", "y"].map(|name| b.float_param(name)));
+        let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+        let size = matches!(self.rows, Rows::OfSize(_)).then(|| b.float_param("size"));
+        let first = index * width;
+        let [k, l, amplitude] = [0u32, 1, 2].map(|i| b.load(table, first + i));
         let amplitude = match size {
             None => amplitude,
             Some(size) => {
-                let other = load(&mut b, 3);
-                live_amplitude(&mut b, [k, l, amplitude, other], size)
+                let other = b.load(table, first + 3);
+                live_amplitude([k, l, amplitude, other], size)
             }
         };
-        let (px, py) = (b.dot(&[xx, xy], &[k, l]), b.dot(&[xy, yy], &[k, l]));
-        let form = b.dot(&[k, l], &[px, py]);
-        let exponent = b.scale(form, (-2.0 * PI * PI) as f32);
-        let exponent = b.clamp(exponent, -80.0, 0.0);
-        let damping = b.exp(exponent);
-        let amplitude = b.mul(amplitude, damping);
-        let turns = b.dot(&[k, l], &place);
-        let turns = nearest(&mut b, turns);
-        let [cosine, sine] = b.circle(turns);
-        let value = b.mul(amplitude, cosine);
-        let slope = b.mul(amplitude, sine);
-        let slope = b.scale(slope, -TAU as f32);
-        let bend = b.scale(value, (-TAU * TAU) as f32);
-        let (kk, kl, ll) = (b.square(k), b.mul(k, l), b.square(l));
-        let parts = [
-            value,
-            b.mul(slope, k),
-            b.mul(slope, l),
-            b.mul(bend, kk),
-            b.mul(bend, kl),
-            b.mul(bend, ll),
-        ];
+        let k = Vec2([k, l]);
+        let (_, left) = damping(k, covariance);
+        let parts = derivatives(amplitude * left, phase(k, place), k, NAMES.len());
         for ((name, sum), part) in NAMES.into_iter().zip(state).zip(parts) {
-            let sum = b.add(sum, part);
-            b.result(name, sum);
+            b.result(name, sum + part);
         }
         b.finish(module)
     }
@@ -139,11 +110,9 @@ const STEPS: usize = 32;
 const KEPT: usize = 48;
 
 /// Which row a standard deviation reads.
-pub(super) fn kept_row(b: &mut Builder, sd: Value) -> Value {
-    let size = b.scale(sd, STEPS as f32);
-    let size = b.clamp(size, 0.0, (KEPT - 1) as f32);
-    let size = b.trunc_i(size);
-    b.cast_u(size)
+pub(super) fn kept_row(sd: Float<'_>) -> Uint<'_> {
+    let size = (sd * STEPS as f32).clamp(0.0, (KEPT - 1) as f32);
+    size.to_int().to_uint()
 }
 
 /// An amplitude of figures whose edges all are diagonals, by the half diagonal h:
@@ -159,24 +128,15 @@ pub(super) fn of_size([k, l, even, odd]: [f64; 4], size: f64) -> f64 {
 }
 
 /// The same where the shader runs.
-fn live_amplitude(b: &mut Builder, [k, l, even, odd]: [Value; 4], size: Value) -> Value {
+fn live_amplitude<'b>([k, l, even, odd]: [Float<'b>; 4], size: Float<'b>) -> Float<'b> {
     // All p are multiples of ½.
-    let (least, one) = (b.f32(0.25), b.f32(1.0));
-    let [[sp, cp], [sq, cq]] = [b.add(k, l), b.sub(k, l)].map(|p| {
-        let turns = b.mul(p, size);
-        let turns = b.scale(turns, 0.5);
-        let turns = nearest(b, turns);
-        let [cosine, sine] = b.circle(turns);
-        let magnitude = b.abs(p);
-        let still = b.lt(magnitude, least);
-        let angle = b.scale(p, PI as f32);
-        let angle = b.select(still, one, angle);
-        let ratio = b.div(sine, angle);
-        [b.select(still, size, ratio), cosine]
+    let [[sp, cp], [sq, cq]] = [k + l, k - l].map(|p| {
+        let [cosine, sine] = nearest(p * size * 0.5).circle();
+        let still = p.abs().lt(0.25);
+        let ratio = sine / still.select(1.0, p * PI as f32);
+        [still.select(size, ratio), cosine]
     });
-    let (both, left, right) = (b.mul(sp, sq), b.mul(cq, sp), b.mul(cp, sq));
-    let across = b.sub(left, right);
-    b.dot(&[even, odd], &[both, across])
+    even * (sp * sq) + odd * (cq * sp - cp * sq)
 }
 
 /// k, l and a bound of [`of_size`] for any h up to ½.

@@ -5,7 +5,7 @@ use super::rows::{Figure, Shape};
 use super::series::Harmonics;
 use super::{CROSSOVER, Place, Tiling, highest};
 use crate::pattern::region::Outline;
-use mipless_codegen::ir::{Builder, Value};
+use mipless_codegen::ir::{Bool, Builder};
 use std::f64::consts::{PI, TAU};
 
 /// What stands in a cell, around its centre.
@@ -20,7 +20,7 @@ pub(crate) enum Tile {
 
 impl Tile {
     /// One at every site of a lattice.
-    pub(crate) fn on(&self, b: &mut Builder, lattice: Lattice) -> Tiling {
+    pub(crate) fn on<'b>(&self, b: &'b Builder, lattice: Lattice) -> Tiling<'b> {
         let shape = match self {
             Self::Disc(radius) => Shape::Disc(*radius),
             Self::Polygon(sides) => Shape::Polygon(outline(sides)),
@@ -35,12 +35,12 @@ impl Tile {
         Tiling {
             key: format!("{self:?}"),
             lattice,
-            size: b.f32(1.0),
+            size: b.float(1.0),
             figures: vec![figure],
             extent: reach,
             harmonics: self.harmonics(lattice),
             thinnest: CROSSOVER,
-            inside: Box::new(move |b, place| point(b, lattice, &shape, place)),
+            inside: Box::new(move |place| point(lattice, &shape, place)),
             holes: false,
         }
     }
@@ -142,27 +142,21 @@ fn outline(sides: &[[f64; 2]]) -> Outline {
 }
 
 /// Whether a place lies inside a figure: of each row next to it, the nearest.
-fn point(b: &mut Builder, lattice: Lattice, shape: &Shape, [x, y]: Place) -> Value {
-    let (zero, one) = (b.f32(0.0), b.f32(1.0));
-    let mut inside = b.bool(false);
+fn point<'b>(lattice: Lattice, shape: &Shape, [x, y]: Place<'b>) -> Bool<'b> {
+    let b = x.builder();
+    let (zero, one) = (b.float(0.0), b.float(1.0));
+    let mut inside = b.literal(false);
     for [shift, height] in lattice.rows() {
-        let from = b.offset(x, -shift as f32);
-        let rounded = b.offset(from, 0.5);
-        let rounded = b.floor(rounded);
-        let dx = b.sub(from, rounded);
-        let dy = b.offset(y, -height as f32);
-        let this = match shape {
-            Shape::Polygon(outline) => {
-                let back = [b.neg(dx), b.neg(dy)];
-                outline.holds(b, [back, [one, zero], [zero, one], [zero, zero]])
-            }
-            Shape::Disc(radius) => {
-                let distance = b.dot(&[dx, dy], &[dx, dy]);
-                let reach = b.f32((radius * radius) as f32);
-                b.lt(distance, reach)
-            }
-        };
-        inside = b.or(inside, this);
+        let from = x + -shift as f32;
+        let dx = from - (from + 0.5).floor();
+        let dy = y + -height as f32;
+        inside = inside
+            | match shape {
+                Shape::Polygon(outline) => {
+                    outline.holds([[-dx, -dy], [one, zero], [zero, one], [zero, zero]])
+                }
+                Shape::Disc(radius) => (dx * dx + dy * dy).lt((radius * radius) as f32),
+            };
     }
     inside
 }

@@ -1,0 +1,31 @@
+//! Where coordinates are, and what is measured from a centre.
+
+use crate::componentwise::difference;
+use mipless_codegen::moments::Signal;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Default, Node, PortSpec, PortType, Type};
+
+/// The coordinates that a node changes.
+pub(crate) const TEXCOORD: PortSpec = PortSpec::new(
+    "texcoord",
+    PortType::Exactly(Type::Vector2),
+    Default::Surface,
+    "The coordinates.",
+)
+.unit("uv");
+
+/// Where they are measured from.
+pub(crate) const CENTER: PortSpec = PortSpec::new(
+    "center",
+    PortType::Exactly(Type::Vector2),
+    Default::Vector2([0.5, 0.5]),
+    "The centre.",
+)
+.unit("uv");
+
+/// The centre, and the coordinates from there.
+pub(crate) fn centred<'b>(lower: &Lower<'_, 'b>, node: &Node) -> (Bundle<'b>, [Signal<'b>; 2]) {
+    let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
+    let from = [0, 1].map(|i| difference(&texcoord[i], &centre[i]));
+    (centre, from)
+}

@@ -1,0 +1,78 @@
+//! Two halves along a coordinate.
+
+use crate::componentwise::{binary, transfer};
+use crate::pattern::ramp::between;
+use crate::pattern::unless::pattern_unless;
+use mipless_codegen::moments::Piecewise;
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type};
+
+/// One row a node: which coordinate, and its halves by their ports and by what the pages call them.
+macro_rules! splits {
+    ($($(#[$doc:meta])* $node:ident {
+        along: ($axis:literal, $coordinate:literal),
+        halves: ($from:literal, $from_side:literal, $to:literal, $to_side:literal),
+        remark: $remark:literal,
+    })*) => {$(
+        $(#[$doc])*
+        pub(crate) const fn $node() -> NodeDef {
+            static SPEC: NodeSpec = NodeSpec {
+                name: stringify!($node),
+                aliases: &[],
+                category: Category::Pattern,
+                summary: concat!("One value on one side and another on the other, along ", $coordinate, "."),
+                doc: Doc {
+                    computes: concat!(
+                        "out = ", $to, " where ", $coordinate, " ≥ center, else ", $from,
+                        $remark,
+                    ),
+                    statistics: "A step of a Gaussian, Φ in closed form, variance P(1 − P): exact between constants. \
+                        Between varying values, a product, as `mix`.",
+                    accuracy: "Within 1e-6 of the difference of the values. Held by `nodes/src/pattern/tests.rs`.",
+                    references: concat!(
+                        "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. Bussgang \
+                        1952, *Crosscorrelation functions of amplitude-distorted Gaussian signals*. MaterialX \
+                        1.39 specification, node `", stringify!($node), "`.",
+                    ),
+                },
+                inputs: &[
+                    PortSpec::new($from, PortType::Any, Default::Float(0.0), concat!("The value at the ", $from_side, ".")),
+                    PortSpec::new($to, PortType::Any, Default::Float(0.0), concat!("The value at the ", $to_side, ".")),
+                    PortSpec::new("center", PortType::Exactly(Type::Float), Default::Float(0.5), "Where one value meets the other.").unit("uv"),
+                    PortSpec::new("texcoord", PortType::Exactly(Type::Vector2), Default::Surface, "The coordinates.").unit("uv"),
+                ],
+                output: OutputType::Widest,
+                class: |inputs| pattern_unless(inputs, &[$from, $to, "center"]),
+                example: concat!("{\n  \"version\": 1,\n  \"name\": \"", stringify!($node), "_example\",\n  \"nodes\": {\n    \"", stringify!($node), "\": { \"type\": \"", stringify!($node), "\", \"inputs\": { \"", $from, "\": \"#20303c\", \"", $to, "\": \"#e8c27a\" } }\n  },\n  \"outputs\": { \"out\": { \"node\": \"", stringify!($node), "\" } }\n}"),
+            };
+            NodeDef {
+                spec: &SPEC,
+                lower: |lower, node| along(lower, node, $axis, [$from, $to]),
+            }
+        }
+    )*};
+}
+
+splits! {
+    /// Left and right.
+    splitlr {
+        along: (0, "u"),
+        halves: ("valuel", "left", "valuer", "right"),
+        remark: ", with (u, v) = texcoord.",
+    }
+    /// Top and bottom.
+    splittb {
+        along: (1, "v"),
+        halves: ("valuet", "top", "valueb", "bottom"),
+        remark: ", with (u, v) = texcoord. As in MaterialX, the top is where v is 0.",
+    }
+}
+
+fn along<'b>(lower: &mut Lower<'_, 'b>, node: &Node, axis: usize, halves: [&str; 2]) -> Bundle<'b> {
+    let texcoord = lower.bundle(node, "texcoord");
+    let step = Piecewise::step(lower.number(node, "center"));
+    let share = transfer(lower, &texcoord[axis], &step);
+    binary(lower, node, halves, |lower, from, to| {
+        between(lower, from, to, &share)
+    })
+}

@@ -1,0 +1,156 @@
+//! Figures in a lattice: discs, hexagons and cloverleafs.
+
+use crate::pattern::checkerboard::tiled as cells;
+use crate::pattern::cloverleaf::quadrant;
+use crate::pattern::grid::{STAGGERED, TEXCOORD, UVOFFSET, UVTILING};
+use crate::pattern::tiling::{Lattice, Tile, tiled};
+use crate::pattern::unless::pattern_unless;
+use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_graph::{
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+};
+
+/// One row a node: what stands in a cell, of a radius and perhaps staggered, and how the pages say it.
+macro_rules! figures {
+    ($($(#[$doc:meta])* $node:ident {
+        tile: $tile:expr,
+        aliases: $aliases:expr,
+        summary: $summary:literal,
+        inside: $inside:literal,
+        summed: $summed:literal,
+        within: $within:literal,
+        references: $references:literal,
+        size: $size:literal,
+    })*) => {$(
+        $(#[$doc])*
+        pub(crate) const fn $node() -> NodeDef {
+            static SPEC: NodeSpec = NodeSpec {
+                name: stringify!($node),
+                aliases: $aliases,
+                category: Category::Pattern,
+                summary: $summary,
+                doc: Doc {
+                    computes: concat!(
+                        "With (u, v) = texcoord · uvtiling − uvoffset: out = 1 inside ", $inside,
+                        " in the middle of every unit cell, else 0. Where the tiling is staggered, the \
+                        figures stand at the origin and in rows that are 0.866 cells apart and shifted by \
+                        half a cell, so that each has six neighbours.",
+                    ),
+                    statistics: concat!(
+                        "Footprints whose minor axis is below 0.16 cells and whose major axis is below 1.3 \
+                        cells sum the exact measures of the figures near them, ", $summed, ". All others \
+                        damp the Fourier series of the lattice by e^{−2π²kᵀΣk}, exact for any covariance; \
+                        those that are thinner are widened first, gradually from a length of 0.9 cells. \
+                        Variance P(1 − P). Over a large footprint the mean is the share of the plane that \
+                        the figures cover.",
+                    ),
+                    accuracy: concat!(
+                        "The mean is within ", $within, ", but for footprints that are longer than 0.9 cells \
+                        and thinner than 0.16: these are blurred across, which is within 0.01 at 8:1. Held \
+                        by `nodes/src/pattern/tests.rs` against dense sums.",
+                    ),
+                    references: concat!(
+                        $references, " MaterialX 1.39, node `", stringify!($node), "` of its standard library.",
+                    ),
+                },
+                inputs: &[
+                    TEXCOORD,
+                    UVTILING,
+                    UVOFFSET,
+                    PortSpec::new("size", PortType::Exactly(Type::Float), Default::Float(0.5), $size)
+                        .uniform()
+                        .range(Range::hard(0.0, 1.0))
+                        .unit("cells"),
+                    STAGGERED,
+                ],
+                output: OutputType::Exactly(Type::Color3),
+                class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset"]),
+                example: concat!("{\n  \"version\": 1,\n  \"name\": \"", stringify!($node), "_example\",\n  \"nodes\": {\n    \"", stringify!($node), "\": { \"type\": \"", stringify!($node), "\", \"inputs\": { \"uvtiling\": [7, 7], \"size\": 0.8, \"staggered\": true } }\n  },\n  \"outputs\": { \"out\": { \"node\": \"", stringify!($node), "\" } }\n}"),
+            };
+            NodeDef {
+                spec: &SPEC,
+                lower: |lower, node| tiles(lower, node, $tile),
+            }
+        }
+    )*};
+}
+
+figures! {
+    /// Discs.
+    tiledcircles {
+        tile: |radius, _| Tile::Disc(radius),
+        aliases: &["dots", "polka_dots", "tiled_circles"],
+        summary: "A disc in every cell.",
+        inside: "a disc of diameter size",
+        summed: "disc by disc",
+        within: "2e-3",
+        references: "Watson 1944, *A Treatise on the Theory of Bessel Functions* (the transform of a disc). \
+            Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (a footprint \
+            as a low-pass).",
+        size: "The diameter.",
+    }
+    /// Hexagons with a corner up.
+    tiledhexagons {
+        tile: hexagon,
+        aliases: &["beehive", "honeycomb", "hexagons", "tiled_hexagons"],
+        summary: "A hexagon in every cell.",
+        inside: "a regular hexagon of width size, with a corner up,",
+        summed: "edge by edge",
+        within: "2e-3",
+        references: "Owen 1956, *Tables for Computing Bivariate Normal Probabilities*. Heckbert 1989, \
+            *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (a footprint as a low-pass).",
+        size: "The width; staggered hexagons of size 1 leave no gap.",
+    }
+    /// Cloverleafs.
+    tiledcloverleafs {
+        tile: cloverleaf,
+        aliases: &["cloverleafs", "quatrefoils", "tiled_cloverleafs"],
+        summary: "A cloverleaf in every cell.",
+        inside: "a `cloverleaf` of width size, with 24 edges a half of its outline,",
+        summed: "edge by edge",
+        within: "3e-3",
+        references: "Owen 1956, *Tables for Computing Bivariate Normal Probabilities*. Heckbert 1989, \
+            *Fundamentals of Texture Mapping and Image Warping*, §3.5.8 (a footprint as a low-pass).",
+        size: "The width from tip to tip.",
+    }
+}
+
+/// The tiling of a node, as a colour; `tile` is what stands in a cell, of a radius and perhaps staggered.
+fn tiles<'b>(
+    lower: &mut Lower<'_, 'b>,
+    node: &Node,
+    tile: impl FnOnce(f64, bool) -> Tile,
+) -> Bundle<'b> {
+    let staggered = lower.flag(node, "staggered");
+    let lattice = if staggered {
+        Lattice::Triangular
+    } else {
+        Lattice::Square
+    };
+    let tile = tile(0.5 * f64::from(lower.float(node, "size")), staggered);
+    let position = cells(lower, node, [1.0, (1.0 / lattice.height()) as f32]);
+    let tiling = tile.on(lower.b(), lattice);
+    vec![tiled(lower, &position, &tiling); 3]
+}
+
+fn hexagon(radius: f64, staggered: bool) -> Tile {
+    let (side, top) = (radius / 3f64.sqrt(), 2.0 * radius / 3f64.sqrt());
+    Tile::Polygon(if top > 0.5 && !staggered {
+        // What reaches beyond its cell is cut.
+        vec![
+            [0.0, radius],
+            [side, radius],
+            [0.5, (top - 0.5) * 3f64.sqrt()],
+        ]
+    } else {
+        vec![[0.0, radius], [side, radius], [top, 0.0]]
+    })
+}
+
+/// Edges of a quarter of a circle: a leaf is seldom large on the screen.
+const EDGES: usize = 6;
+
+fn cloverleaf(radius: f64, _: bool) -> Tile {
+    let corners = quadrant(EDGES).into_iter();
+    Tile::Polygon(corners.map(|[x, y]| [radius * y, radius * x]).collect())
+}
