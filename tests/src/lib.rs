@@ -7,7 +7,7 @@
 //! | `shaders` | every shader that can be emitted is valid, and translates to every target |
 //! | `snapshots` | the IR and the WGSL of every graph, and that compilation is deterministic |
 //! | `stability` | no footprint, however extreme, gives anything but a finite number in range |
-//! | `properties` | random graphs and mutilated documents |
+//! | `properties` | random graphs, nodes with any input set, and mutilated documents |
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `tidy` | the order of the house: arrows, generated files, names |
@@ -23,6 +23,7 @@ pub mod random_graph;
 pub mod thumbnail;
 pub mod timing;
 pub mod tolerance;
+pub mod varied;
 
 use mipless::Method;
 use std::path::PathBuf;

@@ -390,6 +390,19 @@ fn tilings_are_filtered_exactly_unless_they_are_blurred_across() {
 }
 
 #[test]
+fn figures_of_size_0_are_not_there() {
+    for name in ["tiledcircles", "tiledhexagons", "tiledcloverleafs"] {
+        for method in [Method::Point, Method::Local, Method::Quad] {
+            let text = graph(name, &json!({ "size": 0 }));
+            for size in SIZES {
+                let found = evaluated(&text, method, &footprints(size, true, 3));
+                assert!(found.iter().flatten().all(|&x| x == 0.0), "{name} {method}");
+            }
+        }
+    }
+}
+
+#[test]
 fn gradients_around_a_centre_have_nearly_their_means() {
     held("gradientradial", &json!({}), 0.5, [[0.03; 2], [0.09; 2]]);
     held(

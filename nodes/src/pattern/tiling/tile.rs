@@ -36,7 +36,8 @@ impl Tile {
             key: format!("{self:?}"),
             lattice,
             size: b.float(1.0),
-            figures: vec![figure],
+            // What has no extent has no corners either.
+            figures: Vec::from_iter((reach > 0.0).then_some(figure)),
             extent: reach,
             harmonics: self.harmonics(lattice),
             thinnest: CROSSOVER,
