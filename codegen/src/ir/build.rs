@@ -168,17 +168,19 @@ impl Core {
             "operands of {}",
             info.name
         );
-        let mut padded = [operands[0]; 3];
-        padded[..operands.len()].copy_from_slice(operands);
-        for (&value, &ty) in operands.iter().zip(info.operands) {
-            assert_eq!(
-                self.ty(value),
-                ty,
-                "operand of {} in {}",
-                info.name,
-                self.name
-            );
-        }
+        // Expressions have the types of the table already.
+        debug_assert!(
+            (operands.iter().zip(info.operands)).all(|(&value, &ty)| self.ty(value) == ty),
+            "operands of {} in {}",
+            info.name,
+            self.name
+        );
+        let padded = match *operands {
+            [a] => [a; 3],
+            [a, b] => [a, b, a],
+            [a, b, c] => [a, b, c],
+            _ => unreachable!("ops take up to three operands"),
+        };
         if let Some(value) = self.simplified(op, padded) {
             return value;
         }
