@@ -12,7 +12,9 @@
 macro_rules! room {
     (@module $node:ident) => { pub(crate) mod $node; };
     (@module $family:ident::$node:ident) => {};
-    (@definition $node:ident) => { $node::DEF };
+    (@definition $node:ident) => {
+        mipless_codegen::NodeDef { spec: &$node::SPEC, lower: $node::lower }
+    };
     (@definition $family:ident::$node:ident) => { $family::$node() };
     ($($file:ident $(::$row:ident)?,)*) => {
         $(room! { @module $file $(::$row)? })*

@@ -4,11 +4,11 @@ use crate::componentwise::{binary, composed, transfer};
 use crate::port::any;
 use crate::transfer::arc;
 use mipless_codegen::moments::{LinearWave, Signal};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 use std::f32::consts::{PI, TAU};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "atan2",
     aliases: &["arctan2", "arctangent2", "math_arctan2"],
     category: Category::Arithmetic,
@@ -45,10 +45,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     binary(lower, node, ["iny", "inx"], |lower, y, x| {
         let [up, across] = [y, x].map(Signal::flat_mean);
         if !lower.mode().spreads() || (y.is_certain() && x.is_certain()) {

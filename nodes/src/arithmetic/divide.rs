@@ -2,10 +2,10 @@
 
 use crate::componentwise::{binary, quotient};
 use crate::port::any;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "divide",
     aliases: &["div", "math_divide"],
     category: Category::Arithmetic,
@@ -35,9 +35,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// By a number, linear; a varying divisor bends, and beside a varying numerator makes a product.
 fn class(inputs: &dyn InputView) -> Behaviour {
     match (inputs.varies("in1"), inputs.varies("in2")) {
@@ -47,6 +44,6 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     binary(lower, node, ["in1", "in2"], quotient)
 }

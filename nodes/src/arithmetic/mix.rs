@@ -2,10 +2,10 @@
 
 use crate::componentwise::binary;
 use crate::port::{any, number};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "mix",
     aliases: &["blend", "lerp", "mixrgb", "mix_color", "interpolate"],
     category: Category::Arithmetic,
@@ -32,9 +32,6 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear unless the mask varies together with what it masks.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("mix") && (inputs.varies("bg") || inputs.varies("fg")) {
@@ -44,7 +41,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mask = lower.signal(node, "mix");
     let ports = ["bg", "fg"];
     binary(lower, node, ports, |lower, bg, fg| {

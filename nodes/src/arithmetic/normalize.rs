@@ -2,10 +2,10 @@
 
 use crate::arithmetic::vector::unit;
 use crate::port::any;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "normalize",
     aliases: &["normalise", "unit_vector"],
     category: Category::Arithmetic,
@@ -41,10 +41,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let components = lower.bundle(node, "in");
     let ranges = vec![[-1.0, 1.0]; components.len()];
     lower.algebra.cubature(&components, &ranges, unit)

@@ -1,15 +1,13 @@
 //! A blurred signal.
 
+use crate::port;
 use crate::port::{any, number};
 use mipless_codegen::ir::{Sym2, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "blur",
     aliases: &["gaussian_blur", "blur_hq", "soften", "fast_blur"],
     category: Category::Channel,
@@ -39,13 +37,7 @@ static SPEC: NodeSpec = NodeSpec {
         number("size", 0.0, "The width of the box that blurs as much.")
             .range(Range::hard(0.0, 1e4).with_soft(0.0, 0.1))
             .unit("uv"),
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "Where it is: the surface's own coordinates.",
-        )
-        .unit("uv"),
+        port::surface("Where it is: the surface's own coordinates."),
     ],
     output: OutputType::Widest,
     class,
@@ -54,9 +46,6 @@ static SPEC: NodeSpec = NodeSpec {
     "blur": { "type": "blur", "inputs": { "in": { "node": "wall" }, "size": 0.06 } }
 "# },
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.in_space("in") {
@@ -71,7 +60,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 /// A footprint of this variance, in uv², blurs nothing that can be seen.
 const LEAST: f32 = 1e-10;
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mode = lower.mode();
     let variance = lower.number(node, "size").square() * (1.0 / 12.0) + LEAST;
     let over = lower.widened(variance);

@@ -1,13 +1,12 @@
 //! Conversion between types.
 
+use crate::port;
 use crate::port::any;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "convert",
     aliases: &["cast", "to_vector", "to_color"],
     category: Category::Channel,
@@ -23,10 +22,10 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         any("in", 0.0, "What is converted."),
-        PortSpec::new(
+        port::choice(
             "to",
-            PortType::Choice(&["color3", "color4", "vector2", "vector3", "vector4"]),
-            Default::Choice("color3"),
+            &["color3", "color4", "vector2", "vector3", "vector4"],
+            "color3",
             "The type of the result.",
         ),
     ],
@@ -38,10 +37,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mut bundle = lower.bundle(node, "in");
     let scalar = bundle.len() == 1;
     while bundle.len() < node.ty.components() {

@@ -2,12 +2,12 @@
 
 use crate::componentwise::unary;
 use crate::port::any;
-use mipless_codegen::NodeDef;
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "dot",
     aliases: &["reroute", "pass_through", "relay"],
     category: Category::Channel,
@@ -35,8 +35,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| unary(lower, node, "in", |_, x| x.clone()),
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    unary(lower, node, "in", |_, x| x.clone())
+}

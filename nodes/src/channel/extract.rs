@@ -1,12 +1,11 @@
 //! One component.
 
+use crate::port;
 use crate::port::any;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "extract",
     aliases: &["channel", "swizzle", "channel_select"],
     category: Category::Channel,
@@ -20,14 +19,9 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         any("in", 0.0, "The vector or colour."),
-        PortSpec::new(
-            "index",
-            PortType::Exactly(Type::Integer),
-            Default::Integer(0),
-            "Which component.",
-        )
-        .uniform()
-        .range(Range::hard(0.0, 3.0)),
+        port::integer("index", 0, "Which component.")
+            .uniform()
+            .range(Range::hard(0.0, 3.0)),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |_| Behaviour::Linear,
@@ -37,10 +31,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mut bundle = lower.bundle(node, "in");
     let index = lower.integer(node, "index").max(0) as usize;
     let last = bundle.len() - 1;

@@ -1,15 +1,13 @@
 //! A normal from a height.
 
+use crate::port;
 use crate::port::number;
 use mipless_codegen::ir::{Float, Sym2, Vec2, dot};
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef, Over, Widened};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_codegen::{Bundle, Lower, Over, Widened};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "heighttonormal",
     aliases: &["normal_map", "bump", "height_to_normal", "normal"],
     category: Category::Channel,
@@ -48,13 +46,7 @@ static SPEC: NodeSpec = NodeSpec {
             "How much the height tilts the normal: 16 for a height in units of the texcoord.",
         )
         .range(Range::soft(0.0, 16.0)),
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates that the normal's axes follow.",
-        )
-        .unit("uv"),
+        port::surface("The coordinates that the normal's axes follow."),
     ],
     output: OutputType::Exactly(Type::Vector3),
     class,
@@ -63,9 +55,6 @@ static SPEC: NodeSpec = NodeSpec {
     "heighttonormal": { "type": "heighttonormal", "inputs": { "in": { "node": "hills" }, "scale": 2 } }
 "# },
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 fn class(inputs: &dyn InputView) -> Behaviour {
     for port in ["in", "texcoord"] {
@@ -85,7 +74,7 @@ const RESOLUTION: f32 = 1e-5;
 /// Slopes beyond this are those of jumps, and vertical.
 const STEEPEST: f32 = 1e9;
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let spreads = lower.mode().spreads();
     let scale = lower.number(node, "scale");
     let over = lower.widened(lower.b().float(RESOLUTION * RESOLUTION));

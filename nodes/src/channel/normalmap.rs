@@ -3,12 +3,12 @@
 use crate::arithmetic::vector::unit;
 use crate::port::number;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "normalmap",
     aliases: &["decode_normal", "unpack_normal", "tangent_normal"],
     category: Category::Channel,
@@ -66,10 +66,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = lower.bundle(node, "in");
     let scale = lower.signal(node, "scale");
     let mut inputs = match &color[..] {

@@ -1,11 +1,10 @@
 //! The components of a vector or colour, each as an output.
 
+use crate::port;
 use crate::port::{any, exactly};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
 macro_rules! separations {
     ($($node:ident {
@@ -30,12 +29,7 @@ macro_rules! separations {
                 },
                 inputs: &[
                     $of,
-                    PortSpec::new(
-                        "output",
-                        PortType::Choice(&[$first $(, $more)*]),
-                        Default::Choice($first),
-                        "Which component `out` is.",
-                    ),
+                    port::choice("output", &[$first $(, $more)*], $first, "Which component `out` is."),
                 ],
                 output: OutputType::Exactly(Type::Float),
                 class: |_| Behaviour::Linear,

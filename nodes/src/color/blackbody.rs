@@ -3,10 +3,10 @@
 use crate::componentwise::{exposed, transfer};
 use crate::port::number;
 use mipless_codegen::moments::{Piecewise, Shape, Signal};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "blackbody",
     aliases: &["black_body", "temperature_to_color"],
     category: Category::Color,
@@ -37,9 +37,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Kelvin and the linear Rec. 709 colour there.
 const STOPS: [(f32, [f32; 3]); 12] = [
     (1667.0, [2.964_11, 0.520_95, 0.0]),
@@ -56,7 +53,7 @@ const STOPS: [(f32, [f32; 3]); 12] = [
     (25_000.0, [0.727_31, 0.987_5, 1.927_4]),
 ];
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let kelvin = exposed(lower, node, "temperature");
     // In units in which slopes are neither large nor small.
     let x = Signal {

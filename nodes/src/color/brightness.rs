@@ -2,10 +2,10 @@
 
 use crate::componentwise::unary;
 use crate::port::{any, number};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "brightness",
     aliases: &["brightness_contrast", "bright_contrast"],
     category: Category::Color,
@@ -32,9 +32,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear but for a varying contrast.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("contrast") {
@@ -44,7 +41,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let contrast = lower.number(node, "contrast");
     let brightness = lower.signal(node, "brightness");
     unary(lower, node, "in", |_, x| {

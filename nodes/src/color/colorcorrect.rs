@@ -7,11 +7,11 @@ use crate::componentwise::{composed, exposed};
 use crate::port::{exactly, number};
 use crate::transfer::levels::curved;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 use std::f32::consts::LN_2;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "colorcorrect",
     aliases: &["color_correct", "color_correction", "grade"],
     category: Category::Color,
@@ -55,10 +55,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = exposed(lower, node, "in");
     let [hue, gamma, lift, gain, contrast, pivot] =
         ["hue", "gamma", "lift", "gain", "contrast", "contrastpivot"]

@@ -4,17 +4,18 @@ mod shape;
 
 use crate::picture::port::{COLORSPACE, FILE, planes};
 use crate::picture::texels::Texels;
+use crate::port;
 use crate::port::number;
 use mipless_codegen::ir::{Builder, Float, Module};
 use mipless_codegen::moments::{Domain, Signal};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
 };
 use shape::Shape;
 use std::sync::Arc;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "colormap2d",
     aliases: &["color_map_2d", "bivariate_ramp", "ramp2d", "lut2d"],
     category: Category::Color,
@@ -50,19 +51,9 @@ static SPEC: NodeSpec = NodeSpec {
         number("in1", 0.0, "The signal along the map's first axis.").range(Range::soft(0.0, 1.0)),
         number("in2", 0.0, "The signal along the map's second axis.").range(Range::soft(0.0, 1.0)),
         FILE,
-        PortSpec::new(
-            "signature",
-            PortType::Choice(&["color3", "color4", "float"]),
-            Default::Choice("color3"),
-            "The type of the result with a file.",
-        ),
+        port::choice("signature", &["color3", "color4", "float"], "color3", "The type of the result with a file."),
         COLORSPACE,
-        PortSpec::new(
-            "shape",
-            PortType::Choice(&["bands", "rings", "regions"]),
-            Default::Choice("regions"),
-            "What the map looks like without a file.",
-        ),
+        port::choice("shape", &["bands", "rings", "regions"], "regions", "What the map looks like without a file."),
         PortSpec::new(
             "stops",
             PortType::Stops,
@@ -70,59 +61,24 @@ static SPEC: NodeSpec = NodeSpec {
             "Places of [0, 1] and values; the type is float if every value is a number, else color3 or \
              color4.",
         ),
-        PortSpec::new(
-            "interpolation",
-            PortType::Choice(&["constant", "linear", "smooth"]),
-            Default::Choice("linear"),
-            "How the value goes from stop to stop.",
-        ),
-        PortSpec::new(
-            "count",
-            PortType::Exactly(Type::Integer),
-            Default::Integer(8),
-            "How often bands or rings repeat the stops across the map, or how many regions there are.",
-        )
+        port::choice("interpolation", &["constant", "linear", "smooth"], "linear", "How the value goes from stop to stop."),
+        port::integer("count", 8, "How often bands or rings repeat the stops across the map, or how many regions there are.")
         .uniform()
         .range(Range::hard(1.0, 256.0).with_soft(1.0, 32.0)),
-        PortSpec::new(
-            "low",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The signals' values at the map's first corner.",
-        )
+        port::pair("low", [0.0, 0.0], "The signals' values at the map's first corner.")
         .uniform()
         .range(Range::soft(-1.0, 1.0)),
-        PortSpec::new(
-            "high",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([1.0, 1.0]),
-            "The signals' values at the opposite corner, at least 1e-3 from `low`.",
-        )
+        port::pair("high", [1.0, 1.0], "The signals' values at the opposite corner, at least 1e-3 from `low`.")
         .uniform()
         .range(Range::soft(-1.0, 1.0)),
         number("rotate", 0.0, "The direction across the bands, counter-clockwise from the first axis.")
         .uniform()
         .range(Range::soft(0.0, 360.0))
         .unit("degrees"),
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.5, 0.5]),
-            "The centre of the rings, in the map.",
-        )
+        port::pair("center", [0.5, 0.5], "The centre of the rings, in the map.")
         .uniform(),
-        PortSpec::new(
-            "addressmode",
-            PortType::Choice(&["clamp", "periodic"]),
-            Default::Choice("clamp"),
-            "What lies beyond the map: its edge, or the map again.",
-        ),
-        PortSpec::new(
-            "seed",
-            PortType::Exactly(Type::Integer),
-            Default::Integer(0),
-            "Selects the sites of the regions.",
-        )
+        port::choice("addressmode", &["clamp", "periodic"], "clamp", "What lies beyond the map: its edge, or the map again."),
+        port::integer("seed", 0, "Selects the sites of the regions.")
         .uniform()
         .range(Range::hard(i32::MIN as f32, i32::MAX as f32).with_soft(0.0, 100.0)),
     ],
@@ -142,9 +98,6 @@ static SPEC: NodeSpec = NodeSpec {
         ] } }
 "## },
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// The smallest width of a map.
 const NARROWEST: f32 = 1e-3;
@@ -166,7 +119,7 @@ enum Picture {
     Shape(Shape),
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (x, y) = (lower.signal(node, "in1"), lower.signal(node, "in2"));
     let pair = |port: &str| {
         let numbers = node.literal(port).numbers();

@@ -1,14 +1,15 @@
 //! A function of one number by stops.
 
 use crate::componentwise::transfer;
+use crate::port;
 use crate::port::number;
 use mipless_codegen::moments::{Piecewise, Shape};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "colorramp",
     aliases: &[
         "colorize",
@@ -54,10 +55,10 @@ static SPEC: NodeSpec = NodeSpec {
             Default::Stops(&[(0.0, 0.0), (1.0, 1.0)]),
             "Places and values; the type is float if every value is a number, else color3 or color4.",
         ),
-        PortSpec::new(
+        port::choice(
             "interpolation",
-            PortType::Choice(&["constant", "linear", "smooth", "cubic"]),
-            Default::Choice("linear"),
+            &["constant", "linear", "smooth", "cubic"],
+            "linear",
             "How the value goes from stop to stop.",
         ),
     ],
@@ -76,10 +77,7 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mut x = lower.signal(node, "in");
     let shape = match lower.choice(node, "interpolation") {
         "constant" => Shape::Constant,

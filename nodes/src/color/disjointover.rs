@@ -3,10 +3,10 @@
 use crate::color::composite::{IMAGES, composite, composition, layered};
 use crate::componentwise::{product, quotient};
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "disjointover",
     aliases: &["disjoint_over"],
     category: Category::Color,
@@ -29,10 +29,7 @@ static SPEC: NodeSpec = NodeSpec {
     example: layered!("disjointover"),
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     composite(lower, node, |lower, fg, bg, k| {
         let one = Signal::constant(lower.b(), 1.0);
         if k == 3 {

@@ -3,12 +3,12 @@
 use crate::color::hsv::adjusted;
 use crate::componentwise::{exposed, numbers};
 use crate::port::exactly;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "hsvadjust",
     aliases: &["adjust_hsv", "hue_saturation", "hsv"],
     category: Category::Color,
@@ -48,10 +48,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = exposed(lower, node, "in");
     let amounts = numbers(lower, node, "amount");
     adjusted(lower, &color, [amounts[0], amounts[1], amounts[2]])

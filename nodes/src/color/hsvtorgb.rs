@@ -4,10 +4,10 @@ use crate::color::hsv::ABSENCE;
 use crate::componentwise::{composed, exposed, product, transfer};
 use crate::port::exactly;
 use mipless_codegen::moments::{LinearWave, Signal};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "hsvtorgb",
     aliases: &["hsv_to_rgb", "combine_hsv"],
     category: Category::Color,
@@ -42,10 +42,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let hsv = exposed(lower, node, "in");
     composed(lower, |lower| {
         let chroma = product(lower, &hsv[1], &hsv[2]);

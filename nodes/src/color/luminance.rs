@@ -1,12 +1,12 @@
 //! Luminance of a colour.
 
 use crate::componentwise::total;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "luminance",
     aliases: &[
         "rgbtobw",
@@ -39,13 +39,10 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// The luminances of the Rec. 709 primaries.
 pub(super) const REC_709: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = lower.bundle(node, "in");
     let weighted = color.iter().zip(REC_709).map(|(x, weight)| x * weight);
     vec![total(lower.b(), weighted)]

@@ -3,10 +3,10 @@
 use crate::color::hsv::to_hsv_function;
 use crate::componentwise::{composed, exposed};
 use crate::port::exactly;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "rgbtohsv",
     aliases: &["rgb_to_hsv", "separate_hsv"],
     category: Category::Color,
@@ -52,10 +52,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = exposed(lower, node, "in");
     let b = lower.b();
     let function = lower.function("rgb_to_hsv", to_hsv_function);

@@ -4,13 +4,13 @@ use crate::componentwise::{composed, exposed, numbers, product, total};
 use crate::port::{exactly, number};
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
     Range, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "saturate",
     aliases: &["saturation", "adjust_saturation"],
     category: Category::Color,
@@ -45,9 +45,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear but for a varying amount.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("amount") {
@@ -57,7 +54,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let color = exposed(lower, node, "in");
     let amount = lower.signal(node, "amount");
     let weights = numbers(lower, node, "lumacoeffs");

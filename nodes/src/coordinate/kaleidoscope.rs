@@ -3,13 +3,12 @@
 use crate::componentwise::{sum, transfer};
 use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::turns;
+use crate::port;
 use mipless_codegen::moments::Piecewise;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "kaleidoscope",
     aliases: &["radial_mirror", "mirror_radial"],
     category: Category::Coordinate,
@@ -29,15 +28,10 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[
         TEXCOORD,
         CENTER,
-        PortSpec::new(
-            "segments",
-            PortType::Exactly(Type::Integer),
-            Default::Integer(6),
-            "How many sectors a turn holds.",
-        )
-        .uniform()
-        .range(Range::hard(1.0, 1000.0).with_soft(2.0, 24.0))
-        .unit("sectors"),
+        port::integer("segments", 6, "How many sectors a turn holds.")
+            .uniform()
+            .range(Range::hard(1.0, 1000.0).with_soft(2.0, 24.0))
+            .unit("sectors"),
     ],
     output: OutputType::Exactly(Type::Vector2),
     class: |_| Behaviour::Function,
@@ -48,10 +42,7 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (centre, [x, y]) = centred(lower, node);
     let segments = lower.integer(node, "segments").max(1) as f32;
     // The sector around the axis is number 0.

@@ -3,12 +3,11 @@
 use crate::componentwise::{product, transfer};
 use crate::coordinate::place::TEXCOORD;
 use crate::pattern::triangle::Triangle;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "mirror",
     aliases: &["mirror_uv", "ping_pong", "mirror2d"],
     category: Category::Coordinate,
@@ -28,18 +27,17 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
+        port::pair(
             "uvtiling",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([1.0, 1.0]),
+            [1.0, 1.0],
             "How many unit squares a unit of texture space holds.",
         )
         .range(Range::soft(1.0, 16.0))
         .unit("tiles per uv"),
-        PortSpec::new(
+        port::choice(
             "axis",
-            PortType::Choice(&["u", "v", "both"]),
-            Default::Choice("both"),
+            &["u", "v", "both"],
+            "both",
             "Which coordinates are mirrored.",
         ),
     ],
@@ -51,10 +49,7 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, tiling] = ["texcoord", "uvtiling"].map(|port| lower.bundle(node, port));
     let axis = lower.choice(node, "axis");
     [("u", 0), ("v", 1)]

@@ -1,27 +1,16 @@
 //! Where coordinates are, and what is measured from a centre.
 
 use crate::componentwise::difference;
+use crate::port;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Default, Node, PortSpec, PortType, Type};
+use mipless_graph::{Node, PortSpec};
 
 /// The coordinates that a node changes.
-pub(crate) const TEXCOORD: PortSpec = PortSpec::new(
-    "texcoord",
-    PortType::Exactly(Type::Vector2),
-    Default::Surface,
-    "The coordinates.",
-)
-.unit("uv");
+pub(crate) const TEXCOORD: PortSpec = port::surface("The coordinates.");
 
 /// Where they are measured from.
-pub(crate) const CENTER: PortSpec = PortSpec::new(
-    "center",
-    PortType::Exactly(Type::Vector2),
-    Default::Vector2([0.5, 0.5]),
-    "The centre.",
-)
-.unit("uv");
+pub(crate) const CENTER: PortSpec = port::pair("center", [0.5, 0.5], "The centre.").unit("uv");
 
 /// The centre, and the coordinates from there.
 pub(crate) fn centred<'b>(lower: &Lower<'_, 'b>, node: &Node) -> (Bundle<'b>, [Signal<'b>; 2]) {

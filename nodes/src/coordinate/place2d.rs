@@ -3,14 +3,12 @@
 use crate::componentwise::{difference, quotient, sum};
 use crate::coordinate::place::TEXCOORD;
 use crate::coordinate::rotate2d::rotated;
+use crate::port;
 use crate::port::number;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "place2d",
     aliases: &[
         "mapping",
@@ -37,18 +35,12 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "pivot",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The point that stays in place.",
-        )
-        .range(Range::soft(-1.0, 1.0))
-        .unit("uv"),
-        PortSpec::new(
+        port::pair("pivot", [0.0, 0.0], "The point that stays in place.")
+            .range(Range::soft(-1.0, 1.0))
+            .unit("uv"),
+        port::pair(
             "scale",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([1.0, 1.0]),
+            [1.0, 1.0],
             "The size, which divides; 0 is refused.",
         )
         .range(Range::soft(0.1, 10.0).nonzero())
@@ -56,18 +48,13 @@ static SPEC: NodeSpec = NodeSpec {
         number("rotate", 0.0, "The angle, counter-clockwise.")
             .range(Range::soft(-180.0, 180.0))
             .unit("degrees"),
-        PortSpec::new(
-            "offset",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The shift, which is subtracted.",
-        )
-        .range(Range::soft(-1.0, 1.0))
-        .unit("uv"),
-        PortSpec::new(
+        port::pair("offset", [0.0, 0.0], "The shift, which is subtracted.")
+            .range(Range::soft(-1.0, 1.0))
+            .unit("uv"),
+        port::choice(
             "operationorder",
-            PortType::Choice(&["SRT", "TRS"]),
-            Default::Choice("SRT"),
+            &["SRT", "TRS"],
+            "SRT",
             "Scale, rotate, translate; or translate, rotate, scale.",
         ),
     ],
@@ -78,9 +65,6 @@ static SPEC: NodeSpec = NodeSpec {
     "board": { "type": "checkerboard", "inputs": { "texcoord": { "node": "place2d" } } }
 "# },
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// Linear in position, pivot and offset; a varying angle or scale multiplies.
 fn class(inputs: &dyn InputView) -> Behaviour {
@@ -95,7 +79,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, pivot, scale, offset] =
         ["texcoord", "pivot", "scale", "offset"].map(|port| lower.bundle(node, port));
     let angle = lower.signal(node, "rotate");

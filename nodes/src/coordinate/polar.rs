@@ -2,10 +2,10 @@
 
 use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::polar;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "polar",
     aliases: &[
         "cartesian_to_polar",
@@ -41,10 +41,7 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (_, [x, y]) = centred(lower, node);
     polar(lower, [&x, &y]).to_vec()
 }

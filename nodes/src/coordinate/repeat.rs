@@ -3,14 +3,12 @@
 use crate::componentwise::product;
 use crate::coordinate::place::TEXCOORD;
 use crate::pattern::separable::phase;
+use crate::port;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "repeat",
     aliases: &["tile", "fract_uv", "modulo_uv"],
     category: Category::Coordinate,
@@ -33,10 +31,9 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
+        port::pair(
             "uvtiling",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([1.0, 1.0]),
+            [1.0, 1.0],
             "How many repetitions a unit of texture space holds.",
         )
         .range(Range::soft(1.0, 16.0))
@@ -50,9 +47,6 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear within the tile of the centre.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("uvtiling") {
@@ -62,7 +56,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, tiling] = ["texcoord", "uvtiling"].map(|port| lower.bundle(node, port));
     (texcoord.iter().zip(&tiling))
         .map(|(coordinate, tiling)| {

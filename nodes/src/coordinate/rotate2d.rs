@@ -1,16 +1,14 @@
 //! Rotation of a vector in the plane.
 
 use crate::componentwise::{product, transfer};
+use crate::port;
 use crate::port::number;
 use mipless_codegen::ir::{Float, Scalar, SharedFunction, Vec2};
 use mipless_codegen::moments::{Signal, Sine};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "rotate2d",
     aliases: &["rotate", "vector_rotate", "rotate_uv"],
     category: Category::Coordinate,
@@ -32,13 +30,7 @@ static SPEC: NodeSpec = NodeSpec {
         ),
     },
     inputs: &[
-        PortSpec::new(
-            "in",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The vector.",
-        )
-        .unit("uv"),
+        port::pair("in", [0.0, 0.0], "The vector.").unit("uv"),
         number("amount", 0.0, "The angle, counter-clockwise.")
             .range(Range::soft(-180.0, 180.0))
             .unit("degrees"),
@@ -51,9 +43,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear unless the angle varies.
 fn class(inputs: &dyn InputView) -> Behaviour {
     match (inputs.varies("in"), inputs.varies("amount")) {
@@ -63,7 +52,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let vector = lower.bundle(node, "in");
     let angle = lower.signal(node, "amount");
     rotated(lower, [&vector[0], &vector[1]], &angle).to_vec()

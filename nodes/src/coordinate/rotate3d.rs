@@ -3,13 +3,13 @@
 use crate::componentwise::{numbers, product, sum};
 use crate::coordinate::rotate2d::turn;
 use crate::port::{exactly, number};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
     Range, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "rotate3d",
     aliases: &["vector_rotate_3d", "rotate_3d", "rotate_about_axis"],
     category: Category::Coordinate,
@@ -50,9 +50,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear unless the angle or the axis varies.
 fn class(inputs: &dyn InputView) -> Behaviour {
     match (
@@ -65,7 +62,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let vector = lower.bundle(node, "in");
     let angle = lower.signal(node, "amount");
     let axis = numbers(lower, node, "axis");

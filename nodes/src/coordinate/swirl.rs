@@ -4,10 +4,10 @@ use crate::componentwise::sum;
 use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::swirled;
 use crate::port::number;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "swirl",
     aliases: &["twist", "twirl", "swirl_uv"],
     category: Category::Coordinate,
@@ -46,10 +46,7 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (centre, [x, y]) = centred(lower, node);
     let [amount, radius] = ["amount", "radius"].map(|port| lower.number(node, port));
     let turned = swirled(lower, [&x, &y], amount, radius);

@@ -2,14 +2,12 @@
 
 use crate::componentwise::{product, sum};
 use crate::coordinate::place::TEXCOORD;
+use crate::port;
 use crate::port::number;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "warp",
     aliases: &[
         "displace_uv",
@@ -37,12 +35,7 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "in",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The displacement.",
-        ),
+        port::pair("in", [0.0, 0.0], "The displacement."),
         number("strength", 0.1, "How far a displacement of 1 moves.")
             .range(Range::soft(-1.0, 1.0))
             .unit("uv"),
@@ -56,9 +49,6 @@ static SPEC: NodeSpec = NodeSpec {
 "## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear unless the strength varies with what it multiplies.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("strength") && inputs.varies("in") {
@@ -68,7 +58,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, by] = ["texcoord", "in"].map(|port| lower.bundle(node, port));
     let strength = lower.signal(node, "strength");
     (texcoord.iter().zip(&by))

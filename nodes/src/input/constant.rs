@@ -1,10 +1,10 @@
 //! A literal.
 
 use crate::port::any;
-use mipless_codegen::NodeDef;
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "constant",
     aliases: &["uniform", "uniform_greyscale", "value", "color", "rgb"],
     category: Category::Input,
@@ -19,18 +19,11 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[any("value", 0.0, "The value.").uniform()],
     output: OutputType::Widest,
     class: |_| Behaviour::Constant,
-    example: r##"{
-  "version": 1,
-  "name": "constant_example",
-  "nodes": {
+    example: example! { "constant", r##"
     "constant": { "type": "constant", "inputs": { "value": "#c08a52" } }
-  },
-  "outputs": { "out": { "node": "constant" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| lower.bundle(node, "value"),
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    lower.bundle(node, "value")
+}

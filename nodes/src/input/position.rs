@@ -1,11 +1,10 @@
 //! The surface's position in space.
 
-use mipless_codegen::NodeDef;
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "position",
     aliases: &[
         "object position",
@@ -25,10 +24,10 @@ static SPEC: NodeSpec = NodeSpec {
             cell and a fraction in [0, 1), so it keeps its detail up to coordinates of 8 million.",
         references: cite!("MaterialX 1.39 specification, node `position`.", heckbert),
     },
-    inputs: &[PortSpec::new(
+    inputs: &[port::choice(
         "space",
-        PortType::Choice(&["object"]),
-        Default::Choice("object"),
+        &["object"],
+        "object",
         "The space of the coordinates: the one that the shader’s caller passes.",
     )],
     output: OutputType::Exactly(Type::Vector3),
@@ -38,8 +37,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, _| lower.space(),
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, _: &Node) -> Bundle<'b> {
+    lower.space()
+}

@@ -1,9 +1,9 @@
 //! The texture coordinates of the surface.
 
-use mipless_codegen::NodeDef;
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Type};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "texcoord",
     aliases: &["uv", "texture_coordinate", "texturecoordinate", "uvmap"],
     category: Category::Input,
@@ -30,8 +30,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, _| lower.surface(),
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, _: &Node) -> Bundle<'b> {
+    lower.surface()
+}

@@ -1,5 +1,6 @@
 //! `byexample`: an endless texture from a small one, by tiling and blending.
 
+use crate::port;
 use std::sync::{Arc, LazyLock};
 
 use crate::noise::source::SEED;
@@ -14,13 +15,12 @@ use crate::picture::read::{Pyramid, Tap};
 use crate::picture::tiling::{Tile, Tiling};
 use mipless_codegen::ir::{Float, Vec2};
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type, linear_from_srgb,
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, linear_from_srgb,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "byexample",
     aliases: &[
         "tiling and blending",
@@ -68,22 +68,12 @@ static SPEC: NodeSpec = NodeSpec {
         TEXCOORD,
         UVTILING,
         UVOFFSET,
-        PortSpec::new(
-            "period",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "After how many examples along u and v the texture repeats, rounded; never where it is 0.",
-        )
+        port::pair("period", [0.0, 0.0], "After how many examples along u and v the texture repeats, rounded; never where it is 0.")
         .uniform()
         .range(Range::hard(0.0, 4096.0).with_soft(0.0, 16.0))
         .unit("pictures"),
         SEED,
-        PortSpec::new(
-            "signature",
-            PortType::Choice(&["color3", "color4", "float"]),
-            Default::Choice("color3"),
-            "The type of the result.",
-        ),
+        port::choice("signature", &["color3", "color4", "float"], "color3", "The type of the result."),
         COLORSPACE,
     ],
     output: OutputType::Named("signature"),
@@ -125,9 +115,6 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// The longest footprint that is not widened.
 const PARTS: Parts = Parts {
     longest: 6.0,
@@ -138,7 +125,7 @@ const PARTS: Parts = Parts {
 /// none beyond 5.1, and tiles at their weights' largest sum are rarer still.
 const DOMAIN: [f32; 2] = [-5.0, 5.0];
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (b, channels) = (lower.b(), node.ty.components());
     let Some(picture) = lower.picture(node, "file") else {
         return vec![Signal::constant(b, 0.0); channels];

@@ -2,12 +2,11 @@
 
 use crate::noise::cell;
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "cellnoise2d",
     aliases: &["cell noise", "cellnoise", "random squares"],
     category: Category::Noise,
@@ -39,20 +38,16 @@ static SPEC: NodeSpec = NodeSpec {
 };
 
 /// Whether it tiles.
-pub(crate) const PERIOD: PortSpec = PortSpec::new(
+pub(crate) const PERIOD: PortSpec = port::integer(
     "period",
-    PortType::Exactly(Type::Integer),
-    Default::Integer(0),
+    0,
     "After how many cells the noise repeats in both directions; 0 for never.",
 )
 .uniform()
 .range(Range::hard(0.0, 65536.0).with_soft(0.0, 64.0))
 .unit("cells");
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
     let seed = lower.integer(node, "seed");
     let period = lower.integer(node, "period");

@@ -3,10 +3,10 @@
 use crate::noise::cell::space;
 use crate::noise::cellnoise2d::PERIOD;
 use crate::noise::source::{FREQUENCY, POSITION, SEED, place};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "cellnoise3d",
     aliases: &["cell noise 3d", "random cubes"],
     category: Category::Noise,
@@ -54,10 +54,7 @@ static SPEC: NodeSpec = NodeSpec {
 }"#,
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = place(lower, node);
     let seed = lower.integer(node, "seed");
     let period = lower.integer(node, "period");

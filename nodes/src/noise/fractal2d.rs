@@ -3,10 +3,10 @@
 use crate::noise::noise2d::{deviation, summed};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
 use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD};
-use mipless_codegen::NodeDef;
-use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "fractal2d",
     aliases: &["fbm", "fractal", "fractal noise", "musgrave", "clouds"],
     category: Category::Noise,
@@ -34,8 +34,6 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "fractal2d" } } }"#,
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| summed(lower, node, tiled_octaves(lower, node)),
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    summed(lower, node, tiled_octaves(lower, node))
+}

@@ -3,15 +3,15 @@
 use crate::coordinate::rotate2d::turn;
 use crate::noise::gabor::{self, Gabor};
 use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD, shaped};
+use crate::port;
 use mipless_codegen::ir::Vec2;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Range, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "gabornoise2d",
     aliases: &["gabor", "gabor noise", "gabor texture", "fbm_gabor"],
     category: Category::Noise,
@@ -67,20 +67,18 @@ static SPEC: NodeSpec = NodeSpec {
 };
 
 /// How fine.
-pub(crate) const FREQUENCY: PortSpec = PortSpec::new(
+pub(crate) const FREQUENCY: PortSpec = port::number(
     "frequency",
-    PortType::Exactly(Type::Float),
-    Default::Float(1.0),
+    1.0,
     "How many waves fit a unit of the texture space.",
 )
 .range(Range::soft(0.25, 64.0))
 .unit("cycles per uv");
 
 /// How regular.
-pub(crate) const BANDWIDTH: PortSpec = PortSpec::new(
+pub(crate) const BANDWIDTH: PortSpec = port::number(
     "bandwidth",
-    PortType::Exactly(Type::Float),
-    Default::Float(1.0),
+    1.0,
     "How wide the band of frequencies is at half its amplitude.",
 )
 .uniform()
@@ -88,30 +86,27 @@ pub(crate) const BANDWIDTH: PortSpec = PortSpec::new(
 .unit("octaves");
 
 /// Which way the waves go.
-pub(crate) const ORIENTATION: PortSpec = PortSpec::new(
+pub(crate) const ORIENTATION: PortSpec = port::number(
     "orientation",
-    PortType::Exactly(Type::Float),
-    Default::Float(0.0),
+    0.0,
     "The direction across the waves, from the u axis counter-clockwise.",
 )
 .range(Range::soft(-180.0, 180.0))
 .unit("degrees");
 
 /// How much they agree.
-pub(crate) const ANISOTROPY: PortSpec = PortSpec::new(
+pub(crate) const ANISOTROPY: PortSpec = port::number(
     "anisotropy",
-    PortType::Exactly(Type::Float),
-    Default::Float(0.0),
+    0.0,
     "1 for waves of one direction, 0 for all directions.",
 )
 .uniform()
 .range(Range::hard(0.0, 1.0));
 
 /// How many.
-pub(crate) const IMPULSES: PortSpec = PortSpec::new(
+pub(crate) const IMPULSES: PortSpec = port::integer(
     "impulses",
-    PortType::Exactly(Type::Integer),
-    Default::Integer(16),
+    16,
     "How many kernels reach a point on average; the cost grows with it.",
 )
 .uniform()
@@ -119,10 +114,9 @@ pub(crate) const IMPULSES: PortSpec = PortSpec::new(
 .unit("count");
 
 /// Whether it tiles.
-pub(crate) const PERIOD: PortSpec = PortSpec::new(
+pub(crate) const PERIOD: PortSpec = port::integer(
     "period",
-    PortType::Exactly(Type::Integer),
-    Default::Integer(0),
+    0,
     "After how many wavelengths the noise repeats in both directions; 0 for never.",
 )
 .uniform()
@@ -160,10 +154,7 @@ pub(crate) fn orientation<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Vec2<'b
     Vec2(turn(lower, &angle).map(|part| part.mean))
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let gabor = described(lower, node);
     let position = cells(lower, node, gabor);
     let orientation = orientation(lower, node);

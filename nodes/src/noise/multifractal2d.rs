@@ -3,16 +3,15 @@
 use crate::noise::layers::{layers, published};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating};
 use crate::noise::source::{FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position};
-use mipless_codegen::NodeDef;
+use crate::port;
 use mipless_codegen::moments::Signal;
-use mipless_graph::{
-    Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
 /// max |CDF − Φ| of three octaves with the default ports.
 const DEVIATION: f32 = 0.025;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "multifractal2d",
     aliases: &[
         "multifractal",
@@ -41,10 +40,9 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[
         TEXCOORD,
         FREQUENCY,
-        PortSpec::new(
+        port::number(
             "amplitude",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "By what the product of the octaves is multiplied.",
         )
         .range(Range::soft(0.0, 4.0)),
@@ -55,10 +53,9 @@ static SPEC: NodeSpec = NodeSpec {
         OCTAVES,
         LACUNARITY,
         DIMINISH,
-        PortSpec::new(
+        port::number(
             "offset",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "What is added to each octave; the first has a standard deviation of 0.25.",
         )
         .range(Range::soft(0.0, 2.0)),
@@ -70,25 +67,21 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "multifractal2d" } } }"#,
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| {
-        let position = position(lower, node);
-        let layers = layers(lower, node, position);
-        let offset = lower.number(node, "offset");
-        // Independent octaves share nothing that a product would have to know.
-        let shares = std::mem::replace(&mut lower.algebra.shares, false);
-        let mut product = Signal::constant(lower.b(), 1.0);
-        for layer in &layers {
-            // 1 + share · (offset − 1).
-            let level = offset * layer.share + (1.0 - layer.share);
-            let varied = &layer.noise * (0.25 * layer.amplitude * layer.share);
-            product = lower.algebra.product(&product, &varied.offset(level));
-        }
-        lower.algebra.shares = shares;
-        let product = published(lower, product);
-        let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
-        vec![lower.algebra.product(&product, &amplitude) + pivot]
-    },
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let position = position(lower, node);
+    let layers = layers(lower, node, position);
+    let offset = lower.number(node, "offset");
+    // Independent octaves share nothing that a product would have to know.
+    let shares = std::mem::replace(&mut lower.algebra.shares, false);
+    let mut product = Signal::constant(lower.b(), 1.0);
+    for layer in &layers {
+        // 1 + share · (offset − 1).
+        let level = offset * layer.share + (1.0 - layer.share);
+        let varied = &layer.noise * (0.25 * layer.amplitude * layer.share);
+        product = lower.algebra.product(&product, &varied.offset(level));
+    }
+    lower.algebra.shares = shares;
+    let product = published(lower, product);
+    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+    vec![lower.algebra.product(&product, &amplitude) + pivot]
+}

@@ -5,7 +5,7 @@ use crate::noise::source::{
     AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, tiling,
 };
 use crate::noise::sum::Octaves;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType, Type};
 
 /// max |CDF − Φ| of the quadrupole kernel and of Perlin's, over 4·10⁶ independent points.
@@ -16,7 +16,7 @@ pub(crate) fn deviation(inputs: &dyn InputView) -> f32 {
     DEVIATIONS[usize::from(inputs.choice("kernel") == "quintic")]
 }
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "noise2d",
     aliases: &[
         "perlin",
@@ -95,8 +95,6 @@ pub(crate) fn summed<'b>(lower: &mut Lower<'_, 'b>, node: &Node, octaves: Octave
     octaves_of(lower, node, (kernel, octaves), (0.25, extent))
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| summed(lower, node, tiled_octave(lower, node)),
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    summed(lower, node, tiled_octave(lower, node))
+}

@@ -6,7 +6,7 @@ use crate::noise::source::{
 };
 use crate::noise::sum::Octaves;
 use crate::noise::volume::{self, Kind};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType, Type};
 
 /// max |CDF − Φ| of the quadrupole kernel and of Perlin's, over 4·10⁶ independent points.
@@ -17,7 +17,7 @@ pub(crate) fn deviation(inputs: &dyn InputView) -> f32 {
     DEVIATIONS[usize::from(inputs.choice("kernel") == "quintic")]
 }
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "noise3d",
     aliases: &["perlin3d", "perlin noise 3d", "noise 3d", "solid noise"],
     category: Category::Noise,
@@ -69,8 +69,6 @@ pub(crate) fn summed<'b>(lower: &mut Lower<'_, 'b>, node: &Node, octaves: Octave
     scaled(lower, node, unit, (0.25, EXTENT * octaves.sd()))
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| summed(lower, node, tiled_octave(lower, node)),
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    summed(lower, node, tiled_octave(lower, node))
+}

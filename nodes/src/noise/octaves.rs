@@ -2,14 +2,14 @@
 
 use super::source::tiling;
 use super::sum::Octaves;
+use crate::port;
 use mipless_codegen::Lower;
-use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
+use mipless_graph::{Behaviour, InputView, Node, PortSpec, Range};
 
 /// How many.
-pub(crate) const OCTAVES: PortSpec = PortSpec::new(
+pub(crate) const OCTAVES: PortSpec = port::number(
     "octaves",
-    PortType::Exactly(Type::Float),
-    Default::Float(3.0),
+    3.0,
     "How many noises are summed; a fraction is the share of the last one's amplitude.",
 )
 .uniform()
@@ -17,20 +17,18 @@ pub(crate) const OCTAVES: PortSpec = PortSpec::new(
 .unit("count");
 
 /// How much finer each is.
-pub(crate) const LACUNARITY: PortSpec = PortSpec::new(
+pub(crate) const LACUNARITY: PortSpec = port::number(
     "lacunarity",
-    PortType::Exactly(Type::Float),
-    Default::Float(2.0),
+    2.0,
     "The ratio of the frequencies of neighbouring octaves.",
 )
 .uniform()
 .range(Range::hard(1.0, 8.0).with_soft(1.5, 3.0));
 
 /// How much weaker each is.
-pub(crate) const DIMINISH: PortSpec = PortSpec::new(
+pub(crate) const DIMINISH: PortSpec = port::number(
     "diminish",
-    PortType::Exactly(Type::Float),
-    Default::Float(0.5),
+    0.5,
     "The ratio of the amplitudes of neighbouring octaves.",
 )
 .uniform()

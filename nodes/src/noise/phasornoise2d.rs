@@ -6,14 +6,14 @@ use crate::noise::gabornoise2d::{
 };
 use crate::noise::phasor::phase;
 use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD};
+use crate::port;
 use mipless_codegen::moments::{LinearWave, Sine, SquareWave};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Type,
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "phasornoise2d",
     aliases: &["phasor", "phasor noise"],
     category: Category::Noise,
@@ -52,10 +52,10 @@ static SPEC: NodeSpec = NodeSpec {
             ..ANISOTROPY
         },
         IMPULSES,
-        PortSpec::new(
+        port::choice(
             "profile",
-            PortType::Choice(&["sine", "triangle", "sawtooth", "square"]),
-            Default::Choice("sine"),
+            &["sine", "triangle", "sawtooth", "square"],
+            "sine",
             "The wave.",
         ),
         AMPLITUDE_OF_WAVE,
@@ -86,10 +86,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     Behaviour::Random { deviation }
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let gabor = described(lower, node);
     let position = cells(lower, node, gabor);
     let orientation = orientation(lower, node);

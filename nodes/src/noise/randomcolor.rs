@@ -6,12 +6,12 @@ use crate::noise::cell::{VARIANCE, lattice_seed, number};
 use crate::noise::randomfloat::{IN, place};
 use crate::noise::source::SEED;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "randomcolor",
     aliases: &["random_color", "random_colour", "color_by_id"],
     category: Category::Noise,
@@ -46,26 +46,18 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Color3),
     class: |_| Behaviour::Random { deviation: 0.22 },
-    example: r#"{
-  "version": 1,
-  "name": "randomcolor_example",
-  "nodes": {
+    example: example! { "randomcolor", r#"
     "bricks": { "type": "brick", "inputs": { "output": "random", "columns": 5, "rows": 10 } },
     "randomcolor": { "type": "randomcolor", "inputs": {
         "in": { "node": "bricks" }, "huelow": 0, "huehigh": 0.12,
         "saturationlow": 0.4, "saturationhigh": 0.8, "brightnesslow": 0.3, "brightnesshigh": 0.9 } }
-  },
-  "outputs": { "out": { "node": "randomcolor" } }
-}"#,
+"# },
 };
 
 const fn bound(name: &'static str, default: f32, doc: &'static str) -> PortSpec {
     let ty = PortType::Exactly(Type::Float);
     PortSpec::new(name, ty, Default::Float(default), doc).range(Range::soft(0.0, 1.0))
 }
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// The bounds, in the order of the parameters.
 const BOUNDS: [&str; 6] = [
@@ -80,7 +72,7 @@ const BOUNDS: [&str; 6] = [
 /// How many hues stand for all.
 const HUES: u32 = 32;
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let place = place(lower, node);
     let seed = lower.integer(node, "seed");
     let bounds = BOUNDS.map(|port| lower.number(node, port));

@@ -4,13 +4,12 @@ use crate::componentwise::{exposed, product, sum};
 use crate::noise::cell::line::{Ensemble, Line, filtered};
 use crate::noise::cell::{VARIANCE, lattice_seed, number};
 use crate::noise::source::SEED;
+use crate::port;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "randomfloat",
     aliases: &["random", "random_float", "random_value", "hash"],
     category: Category::Noise,
@@ -40,43 +39,22 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         IN,
-        PortSpec::new(
-            "min",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The least number.",
-        )
-        .range(Range::soft(0.0, 1.0)),
-        PortSpec::new(
-            "max",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "The largest number.",
-        )
-        .range(Range::soft(0.0, 1.0)),
+        port::number("min", 0.0, "The least number.").range(Range::soft(0.0, 1.0)),
+        port::number("max", 1.0, "The largest number.").range(Range::soft(0.0, 1.0)),
         SEED,
     ],
     output: OutputType::Exactly(Type::Float),
     class: |_| Behaviour::Random { deviation: 0.058 },
-    example: r#"{
-  "version": 1,
-  "name": "randomfloat_example",
-  "nodes": {
+    example: example! { "randomfloat", r#"
     "tiles": { "type": "brick", "inputs": { "output": "random", "bond": "spanish", "columns": 4 } },
     "randomfloat": { "type": "randomfloat", "inputs": { "in": { "node": "tiles" }, "min": 0.2, "max": 0.9 } }
-  },
-  "outputs": { "out": { "node": "randomfloat" } }
-}"#,
+"# },
 };
 
 /// Of what.
-pub(crate) const IN: PortSpec = PortSpec::new(
-    "in",
-    PortType::Exactly(Type::Float),
-    Default::Float(0.0),
-    "The number, of which steps of 1/4096 count.",
-)
-.range(Range::soft(0.0, 1.0));
+pub(crate) const IN: PortSpec =
+    port::number("in", 0.0, "The number, of which steps of 1/4096 count.")
+        .range(Range::soft(0.0, 1.0));
 
 /// `in` in cells, of which multiples of 1/4096 are the middles.
 pub(crate) fn place<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Signal<'b> {
@@ -84,10 +62,7 @@ pub(crate) fn place<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Signal<'b> {
     (number * 4096.0).offset(0.5)
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let place = place(lower, node);
     let seed = lower.integer(node, "seed");
     let line = Line {

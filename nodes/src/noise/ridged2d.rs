@@ -4,16 +4,15 @@ use crate::noise::layers::{layers, published};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating};
 use crate::noise::ridge::{Ridge, couple, settle};
 use crate::noise::source::{FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position};
-use mipless_codegen::NodeDef;
+use crate::port;
 use mipless_codegen::moments::{Piecewise, Signal};
-use mipless_graph::{
-    Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
 /// max |CDF − Φ| of three octaves with the default ports.
 const DEVIATION: f32 = 0.07;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "ridged2d",
     aliases: &[
         "ridged",
@@ -46,10 +45,9 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[
         TEXCOORD,
         FREQUENCY,
-        PortSpec::new(
+        port::number(
             "amplitude",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "By what the sum of the octaves is multiplied.",
         )
         .range(Range::soft(0.0, 4.0)),
@@ -60,18 +58,16 @@ static SPEC: NodeSpec = NodeSpec {
         OCTAVES,
         LACUNARITY,
         DIMINISH,
-        PortSpec::new(
+        port::number(
             "offset",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "The height of a ridge before it is squared; the noise under it has a standard \
              deviation of 0.25.",
         )
         .range(Range::soft(0.0, 2.0)),
-        PortSpec::new(
+        port::number(
             "gain",
-            PortType::Exactly(Type::Float),
-            Default::Float(2.0),
+            2.0,
             "How much of an octave is shown where the one before is high.",
         )
         .range(Range::soft(0.0, 8.0)),
@@ -83,38 +79,34 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "ridged2d" } } }"#,
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| {
-        let position = position(lower, node);
-        let layers = layers(lower, node, position);
-        let [offset, gain] = ["offset", "gain"].map(|port| lower.number(node, port));
-        let b = lower.b();
-        let ridge = Ridge { offset };
-        let weight = Piecewise::clamp(b.float(0.0), b.float(1.0));
-        // What an octave shares with the one before is carried by symbols, whoever reads the node.
-        let shares = std::mem::replace(&mut lower.algebra.shares, true);
-        let first = lower.algebra.next_symbol();
-        let mut sum = Signal::constant(b, 0.0);
-        let mut before: Option<Signal<'_>> = None;
-        for layer in &layers {
-            let mut octave = lower.algebra.transfer(&layer.noise, &ridge);
-            if let Some(before) = before {
-                let weight = lower.algebra.transfer(&(before * gain), &weight);
-                octave = lower.algebra.product(&octave, &weight);
-            }
-            octave = published(lower, octave);
-            sum = sum + &octave * (layer.amplitude * layer.share);
-            if lower.mode().spreads() {
-                couple(lower, first, &mut sum, &mut octave);
-            }
-            before = Some(octave);
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let position = position(lower, node);
+    let layers = layers(lower, node, position);
+    let [offset, gain] = ["offset", "gain"].map(|port| lower.number(node, port));
+    let b = lower.b();
+    let ridge = Ridge { offset };
+    let weight = Piecewise::clamp(b.float(0.0), b.float(1.0));
+    // What an octave shares with the one before is carried by symbols, whoever reads the node.
+    let shares = std::mem::replace(&mut lower.algebra.shares, true);
+    let first = lower.algebra.next_symbol();
+    let mut sum = Signal::constant(b, 0.0);
+    let mut before: Option<Signal<'_>> = None;
+    for layer in &layers {
+        let mut octave = lower.algebra.transfer(&layer.noise, &ridge);
+        if let Some(before) = before {
+            let weight = lower.algebra.transfer(&(before * gain), &weight);
+            octave = lower.algebra.product(&octave, &weight);
         }
-        lower.algebra.shares = shares;
-        settle(first, &mut sum);
-        let sum = published(lower, sum);
-        let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
-        vec![lower.algebra.product(&sum, &amplitude) + pivot]
-    },
-};
+        octave = published(lower, octave);
+        sum = sum + &octave * (layer.amplitude * layer.share);
+        if lower.mode().spreads() {
+            couple(lower, first, &mut sum, &mut octave);
+        }
+        before = Some(octave);
+    }
+    lower.algebra.shares = shares;
+    settle(first, &mut sum);
+    let sum = published(lower, sum);
+    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+    vec![lower.algebra.product(&sum, &amplitude) + pivot]
+}

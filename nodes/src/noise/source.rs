@@ -4,62 +4,42 @@ use super::affine::Affine;
 use super::field::Field;
 use super::kernel::Kernel;
 use super::sum::Octaves;
+use crate::port;
 use mipless_codegen::Lower;
 use mipless_codegen::moments::Signal;
 use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
 
 /// Where.
-pub(crate) const TEXCOORD: PortSpec = PortSpec::new(
-    "texcoord",
-    PortType::Exactly(Type::Vector2),
-    Default::Surface,
-    "Where the noise is evaluated.",
-)
-.unit("uv");
+pub(crate) const TEXCOORD: PortSpec = port::surface("Where the noise is evaluated.");
 
 /// How fine.
-pub(crate) const FREQUENCY: PortSpec = PortSpec::new(
+pub(crate) const FREQUENCY: PortSpec = port::number(
     "frequency",
-    PortType::Exactly(Type::Float),
-    Default::Float(1.0),
+    1.0,
     "How many lattice cells fit a unit of the texture space.",
 )
 .range(Range::soft(0.25, 64.0))
 .unit("cells per uv");
 
 /// How strong.
-pub(crate) const AMPLITUDE: PortSpec = PortSpec::new(
-    "amplitude",
-    PortType::Exactly(Type::Float),
-    Default::Float(1.0),
-    "Four standard deviations of the noise.",
-)
-.range(Range::soft(0.0, 4.0));
+pub(crate) const AMPLITUDE: PortSpec =
+    port::number("amplitude", 1.0, "Four standard deviations of the noise.")
+        .range(Range::soft(0.0, 4.0));
 
 /// Around what.
-pub(crate) const PIVOT: PortSpec = PortSpec::new(
-    "pivot",
-    PortType::Exactly(Type::Float),
-    Default::Float(0.0),
-    "The mean of the noise.",
-)
-.range(Range::soft(-1.0, 1.0));
+pub(crate) const PIVOT: PortSpec =
+    port::number("pivot", 0.0, "The mean of the noise.").range(Range::soft(-1.0, 1.0));
 
 /// Which.
-pub(crate) const SEED: PortSpec = PortSpec::new(
-    "seed",
-    PortType::Exactly(Type::Integer),
-    Default::Integer(0),
-    "Selects one of 2³² independent noises.",
-)
-.uniform()
-.range(Range::hard(i32::MIN as f32, i32::MAX as f32).with_soft(0.0, 100.0));
+pub(crate) const SEED: PortSpec =
+    port::integer("seed", 0, "Selects one of 2³² independent noises.")
+        .uniform()
+        .range(Range::hard(i32::MIN as f32, i32::MAX as f32).with_soft(0.0, 100.0));
 
 /// Whether it tiles.
-pub(crate) const PERIOD: PortSpec = PortSpec::new(
+pub(crate) const PERIOD: PortSpec = port::integer(
     "period",
-    PortType::Exactly(Type::Integer),
-    Default::Integer(0),
+    0,
     "After how many cells of the lattice the noise repeats in both directions; 0 for never.",
 )
 .uniform()
@@ -92,10 +72,10 @@ pub(crate) fn tiling(
 }
 
 /// Of what shape.
-pub(crate) const KERNEL: PortSpec = PortSpec::new(
+pub(crate) const KERNEL: PortSpec = port::choice(
     "kernel",
-    PortType::Choice(&["gaussian", "quintic"]),
-    Default::Choice("gaussian"),
+    &["gaussian", "quintic"],
+    "gaussian",
     "The kernel at each lattice point: `gaussian` is filtered exactly for any footprint, `quintic` \
      is Perlin's gradient noise.",
 );

@@ -2,13 +2,14 @@
 
 use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD, position, shaped};
 use crate::noise::spectral::{self, Density, FARTHEST, Spectrum};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
     Range, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "spectralnoise2d",
     aliases: &["spectral noise", "random phase noise", "cosines"],
     category: Category::Noise,
@@ -36,27 +37,20 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "frequency",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "The centre of the band.",
-        )
-        .range(Range::soft(0.25, 64.0))
-        .unit("cycles per uv"),
-        PortSpec::new(
+        port::number("frequency", 1.0, "The centre of the band.")
+            .range(Range::soft(0.25, 64.0))
+            .unit("cycles per uv"),
+        port::number(
             "bandwidth",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "How wide the band is, for `band` and `power`.",
         )
         .uniform()
         .range(Range::hard(0.0, 8.0).with_soft(0.0, 4.0))
         .unit("octaves"),
-        PortSpec::new(
+        port::integer(
             "waves",
-            PortType::Exactly(Type::Integer),
-            Default::Integer(32),
+            32,
             "How many cosines are summed; the cost grows with it.",
         )
         .uniform()
@@ -65,16 +59,15 @@ static SPEC: NodeSpec = NodeSpec {
         AMPLITUDE,
         PIVOT,
         SEED,
-        PortSpec::new(
+        port::choice(
             "spectrum",
-            PortType::Choice(&["band", "power", "list"]),
-            Default::Choice("band"),
+            &["band", "power", "list"],
+            "band",
             "Which frequencies there are.",
         ),
-        PortSpec::new(
+        port::number(
             "falloff",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "For `power`: amplitudes fall as the frequency to minus this.",
         )
         .uniform()
@@ -124,10 +117,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let choice = lower.choice(node, "spectrum");
     let lines = lower.stops(node, "lines").means();
     let spectrum = Spectrum {

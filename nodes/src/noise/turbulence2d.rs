@@ -3,14 +3,14 @@
 use crate::noise::layers::{layers, published};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating};
 use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position};
-use mipless_codegen::NodeDef;
 use mipless_codegen::moments::{Piecewise, Signal};
-use mipless_graph::{Category, Doc, NodeSpec, OutputType, Type};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Type};
 
 /// max |CDF − Φ| of three octaves.
 const DEVIATION: f32 = 0.06;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "turbulence2d",
     aliases: &["turbulence", "billow", "billowed", "billow noise"],
     category: Category::Noise,
@@ -41,22 +41,18 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "turbulence2d" } } }"#,
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| {
-        let position = position(lower, node);
-        let layers = layers(lower, node, position);
-        let shares = std::mem::replace(&mut lower.algebra.shares, false);
-        let absolute = Piecewise::absolute(lower.b());
-        let mut sum = Signal::constant(lower.b(), 0.0);
-        for layer in &layers {
-            let magnitude = lower.algebra.transfer(&layer.noise, &absolute);
-            sum = sum + magnitude * (layer.amplitude * layer.share);
-        }
-        lower.algebra.shares = shares;
-        let sum = published(lower, sum);
-        let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
-        vec![lower.algebra.product(&sum, &(amplitude * 0.25)) + pivot]
-    },
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let position = position(lower, node);
+    let layers = layers(lower, node, position);
+    let shares = std::mem::replace(&mut lower.algebra.shares, false);
+    let absolute = Piecewise::absolute(lower.b());
+    let mut sum = Signal::constant(lower.b(), 0.0);
+    for layer in &layers {
+        let magnitude = lower.algebra.transfer(&layer.noise, &absolute);
+        sum = sum + magnitude * (layer.amplitude * layer.share);
+    }
+    lower.algebra.shares = shares;
+    let sum = published(lower, sum);
+    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+    vec![lower.algebra.product(&sum, &(amplitude * 0.25)) + pivot]
+}

@@ -8,17 +8,15 @@ use crate::noise::noise2d::one_octave;
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, octaves};
 use crate::noise::source::{EXTENT, SEED, TEXCOORD};
 use crate::noise::worley::{self, Output, Worley};
+use crate::port;
 use mipless_codegen::moments::{Piecewise, Signal};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
 
 /// max |CDF − Φ| of the quadrupole lattice noise, and of octaves of it.
 const DEVIATION: f32 = 0.0046;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "unifiednoise2d",
     aliases: &["noise_texture", "unifiednoise"],
     category: Category::Noise,
@@ -41,58 +39,40 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
+        port::choice(
             "type",
-            PortType::Choice(&["perlin", "cell", "worley", "fractal"]),
-            Default::Choice("perlin"),
+            &["perlin", "cell", "worley", "fractal"],
+            "perlin",
             "Which noise.",
         ),
-        PortSpec::new(
+        port::pair(
             "freq",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([1.0, 1.0]),
+            [1.0, 1.0],
             "How many cells fit a unit of the texture space, along u and along v.",
         )
         .range(Range::soft(0.25, 64.0))
         .unit("cells per uv"),
-        PortSpec::new(
-            "offset",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The shift, which is added.",
-        )
-        .range(Range::soft(-1.0, 1.0))
-        .unit("cells"),
-        PortSpec::new(
+        port::pair("offset", [0.0, 0.0], "The shift, which is added.")
+            .range(Range::soft(-1.0, 1.0))
+            .unit("cells"),
+        port::number(
             "jitter",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "How far Worley's points leave the centres of their cells.",
         )
         .uniform()
         .range(Range::hard(0.0, 1.0)),
-        PortSpec::new(
+        port::choice(
             "style",
-            PortType::Choice(&["distance", "solid"]),
-            Default::Choice("distance"),
+            &["distance", "solid"],
+            "distance",
             "Worley's distances, or a random number for each region.",
         ),
-        PortSpec::new(
-            "outmin",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "What 0 becomes.",
-        ),
-        PortSpec::new(
-            "outmax",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "What 1 becomes.",
-        ),
-        PortSpec::new(
+        port::number("outmin", 0.0, "What 0 becomes."),
+        port::number("outmax", 1.0, "What 1 becomes."),
+        port::flag(
             "clampoutput",
-            PortType::Exactly(Type::Boolean),
-            Default::Boolean(true),
+            true,
             "Whether the result is limited to [outmin, outmax].",
         )
         .uniform(),
@@ -107,9 +87,6 @@ static SPEC: NodeSpec = NodeSpec {
         "nodes": { "unifiednoise2d": { "type": "unifiednoise2d", "inputs": { "type": "worley", "freq": [8, 6], "outmin": 1, "outmax": 0 } } },
         "outputs": { "out": { "node": "unifiednoise2d" } } }"#,
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 fn class(inputs: &dyn InputView) -> Behaviour {
     match (inputs.choice("type"), inputs.flag("clampoutput")) {
@@ -127,7 +104,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, freq, offset] =
         ["texcoord", "freq", "offset"].map(|port| lower.bundle(node, port));
     let position: Vec<Signal<'b>> = (0..2)

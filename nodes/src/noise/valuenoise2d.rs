@@ -4,10 +4,9 @@ use crate::noise::kernel::Kernel;
 use crate::noise::noise2d::tiled_octave;
 use crate::noise::perlin::Kind;
 use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, tiling};
-use mipless_codegen::NodeDef;
-use mipless_graph::{
-    Category, Default, Doc, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
 /// max |CDF − Φ|, measured over 4·10⁶ independent points.
 const DEVIATION: f32 = 0.030;
@@ -15,7 +14,7 @@ const DEVIATION: f32 = 0.030;
 /// The standard deviation of values uniform in [−½, ½], blended: (∫w²)/√12 with ∫w² = 181/231.
 const SD: f32 = 0.226_191_3;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "valuenoise2d",
     aliases: &[
         "valuenoise",
@@ -47,20 +46,9 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[
         TEXCOORD,
         FREQUENCY,
-        PortSpec::new(
-            "amplitude",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
-            "The largest value less the smallest one.",
-        )
-        .range(Range::soft(0.0, 2.0)),
-        PortSpec::new(
-            "pivot",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "The mean of the noise.",
-        )
-        .range(Range::soft(-1.0, 1.0)),
+        port::number("amplitude", 1.0, "The largest value less the smallest one.")
+            .range(Range::soft(0.0, 2.0)),
+        port::number("pivot", 0.5, "The mean of the noise.").range(Range::soft(-1.0, 1.0)),
         SEED,
         PERIOD,
     ],
@@ -71,12 +59,8 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "valuenoise2d" } } }"#,
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef {
-    spec: &SPEC,
-    lower: |lower, node| {
-        let octave = tiled_octave(lower, node);
-        let kernel = Kernel::Quintic(Kind::Value);
-        octaves_of(lower, node, (kernel, octave), (SD, 0.5 / SD))
-    },
-};
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let octave = tiled_octave(lower, node);
+    let kernel = Kernel::Quintic(Kind::Value);
+    octaves_of(lower, node, (kernel, octave), (SD, 0.5 / SD))
+}

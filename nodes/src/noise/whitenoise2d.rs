@@ -7,12 +7,12 @@ use crate::noise::field::{Field, Spread};
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
 use mipless_codegen::ir::{Sym2, Vec2};
 use mipless_codegen::moments::Normal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type,
 };
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "whitenoise2d",
     aliases: &["white noise", "noise_white", "whitenoise", "static"],
     category: Category::Noise,
@@ -54,10 +54,7 @@ static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "whitenoise2d" } } }"#,
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
     let (seed, period) = (lower.integer(node, "seed"), lower.integer(node, "period"));
     let spread = Spread::of(&position);

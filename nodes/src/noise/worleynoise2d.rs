@@ -3,13 +3,11 @@
 use crate::noise::cellnoise2d::PERIOD;
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
 use crate::noise::worley::{self, Output, Worley};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "worleynoise2d",
     aliases: &["worley", "worley noise", "voronoi", "cellular", "cells"],
     category: Category::Noise,
@@ -42,24 +40,23 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[
         TEXCOORD,
         FREQUENCY,
-        PortSpec::new(
+        port::number(
             "jitter",
-            PortType::Exactly(Type::Float),
-            Default::Float(1.0),
+            1.0,
             "How far points leave the centres of their cells.",
         )
         .uniform()
         .range(Range::hard(0.0, 1.0)),
-        PortSpec::new(
+        port::choice(
             "style",
-            PortType::Choice(&["distance", "solid"]),
-            Default::Choice("distance"),
+            &["distance", "solid"],
+            "distance",
             "Distances, or a random number for each region.",
         ),
-        PortSpec::new(
+        port::choice(
             "output",
-            PortType::Choice(&["F1", "F2", "F2-F1"]),
-            Default::Choice("F1"),
+            &["F1", "F2", "F2-F1"],
+            "F1",
             "Of the nearest point, the second, or the difference.",
         ),
         SEED,
@@ -81,10 +78,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     Behaviour::Random { deviation }
 }
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
     let worley = Worley {
         jitter: lower.float(node, "jitter"),

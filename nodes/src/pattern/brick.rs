@@ -8,12 +8,11 @@ use crate::pattern::separable::{Pattern, filtered};
 use crate::pattern::slope::report_bricks;
 use crate::pattern::unless::pattern_unless;
 use crate::pattern::wall::Wall;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "brick",
     aliases: &["bricks", "brick_texture", "brick_wall", "tiles", "masonry", "weave"],
     category: Category::Pattern,
@@ -52,90 +51,42 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "bond",
-            PortType::Choice(&[
+        port::choice("bond", &[
                 "running",
                 "english",
                 "flemish",
                 "herringbone",
                 "basket",
                 "spanish",
-            ]),
-            Default::Choice("running"),
-            "How the bricks are laid.",
-        ),
-        PortSpec::new(
-            "output",
-            PortType::Choice(&["mask", "random"]),
-            Default::Choice("mask"),
-            "The faces of the bricks, or a random number for each.",
-        ),
-        PortSpec::new(
-            "seed",
-            PortType::Exactly(Type::Integer),
-            Default::Integer(0),
-            "Selects the random numbers.",
-        )
+            ], "running", "How the bricks are laid."),
+        port::choice("output", &["mask", "random"], "mask", "The faces of the bricks, or a random number for each."),
+        port::integer("seed", 0, "Selects the random numbers.")
         .uniform()
         .range(Range::hard(i32::MIN as f32, i32::MAX as f32).with_soft(0.0, 100.0)),
-        PortSpec::new(
-            "columns",
-            PortType::Exactly(Type::Float),
-            Default::Float(4.0),
-            "How many bricks a unit of texture space holds along u.",
-        )
+        port::number("columns", 4.0, "How many bricks a unit of texture space holds along u.")
         .range(Range::soft(1.0, 32.0))
         .unit("bricks per uv"),
-        PortSpec::new(
-            "rows",
-            PortType::Exactly(Type::Float),
-            Default::Float(8.0),
-            "How many rows a unit of texture space holds along v.",
-        )
+        port::number("rows", 8.0, "How many rows a unit of texture space holds along v.")
         .range(Range::soft(1.0, 64.0).nonzero())
         .unit("rows per uv"),
-        PortSpec::new(
-            "row_offset",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "By how much every other row of the running bond is shifted; the other bonds have their own.",
-        )
+        port::number("row_offset", 0.5, "By how much every other row of the running bond is shifted; the other bonds have their own.")
         .range(Range::soft(0.0, 1.0))
         .unit("bricks"),
-        PortSpec::new(
-            "mortar",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.1),
-            "The width of the joints.",
-        )
+        port::number("mortar", 0.1, "The width of the joints.")
         .range(Range::hard(0.0, 1.0).with_soft(0.0, 0.5))
         .unit("rows"),
-        PortSpec::new(
-            "bevel",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The width over which a brick's edge rises, at most to its middle.",
-        )
+        port::number("bevel", 0.0, "The width over which a brick's edge rises, at most to its middle.")
         .range(Range::hard(0.0, 1.0).with_soft(0.0, 0.5))
         .unit("rows"),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["columns", "rows", "row_offset", "mortar", "bevel"]),
-    example: r#"{
-  "version": 1,
-  "name": "brick_example",
-  "nodes": {
+    example: example! { "brick", r#"
     "brick": { "type": "brick", "inputs": { "bond": "flemish", "columns": 4, "rows": 12, "mortar": 0.12, "bevel": 0.1 } }
-  },
-  "outputs": { "out": { "node": "brick" } }
-}"#,
+"# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let bond = Bond::named(lower.choice(node, "bond"));
     let texcoord = lower.bundle(node, "texcoord");
     let counts = ["columns", "rows"].map(|port| lower.signal(node, port));

@@ -1,8 +1,9 @@
 //! Squares of two colours.
 
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
 };
@@ -11,7 +12,7 @@ use crate::componentwise::{binary, difference, product};
 use crate::pattern::pulse::Pulse;
 use crate::pattern::separable::{Pattern, Term, Terms, filtered};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "checkerboard",
     aliases: &["checker", "checker_texture", "checkers", "chess"],
     category: Category::Pattern,
@@ -44,46 +45,26 @@ static SPEC: NodeSpec = NodeSpec {
             Default::Color3([0.0, 0.0, 0.0]),
             "The colour of the square at the origin.",
         ),
-        PortSpec::new(
+        port::pair(
             "uvtiling",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([8.0, 8.0]),
+            [8.0, 8.0],
             "How many squares a unit of texture space holds.",
         )
         .range(Range::soft(1.0, 64.0))
         .unit("squares per uv"),
-        PortSpec::new(
-            "uvoffset",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The shift, which is subtracted.",
-        )
-        .range(Range::soft(-1.0, 1.0))
-        .unit("squares"),
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
+        port::pair("uvoffset", [0.0, 0.0], "The shift, which is subtracted.")
+            .range(Range::soft(-1.0, 1.0))
+            .unit("squares"),
+        port::surface("The coordinates."),
     ],
     output: OutputType::Exactly(Type::Color3),
     class: |inputs| pattern_unless(inputs, &["color1", "color2", "uvtiling", "uvoffset"]),
-    example: r##"{
-  "version": 1,
-  "name": "checkerboard_example",
-  "nodes": {
+    example: example! { "checkerboard", r##"
     "checkerboard": { "type": "checkerboard", "inputs": { "color1": "#e8c27a", "color2": "#20303c", "uvtiling": [6, 6] } }
-  },
-  "outputs": { "out": { "node": "checkerboard" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = tiled(lower, node, [0.5, 0.5]);
     let terms = Terms {
         key: "checkerboard".to_owned(),

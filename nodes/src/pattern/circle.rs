@@ -2,24 +2,22 @@
 
 use crate::pattern::figure::{Figure, drawn_softly};
 use crate::pattern::grid::TEXCOORD;
+use crate::port;
 
 use crate::pattern::unless::pattern_unless;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
 
 /// How soft.
-pub(crate) const EDGE: PortSpec = PortSpec::new(
+pub(crate) const EDGE: PortSpec = port::number(
     "edge",
-    PortType::Exactly(Type::Float),
-    Default::Float(0.0),
+    0.0,
     "The width of the ramp from 0 to 1 across the outline; 0 for a sharp one.",
 )
 .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 0.5))
 .unit("uv");
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "circle",
     aliases: &["disc", "disk"],
     category: Category::Pattern,
@@ -39,39 +37,20 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "radius",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "The radius.",
-        )
-        .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
-        .unit("uv"),
+        port::pair("center", [0.0, 0.0], "The centre.").unit("uv"),
+        port::number("radius", 0.5, "The radius.")
+            .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
+            .unit("uv"),
         EDGE,
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["center", "radius", "edge"]),
-    example: r##"{
-  "version": 1,
-  "name": "circle_example",
-  "nodes": {
+    example: example! { "circle", r##"
     "circle": { "type": "circle", "inputs": { "center": [0.5, 0.5], "radius": 0.35 } }
-  },
-  "outputs": { "out": { "node": "circle" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let edge = lower.number(node, "edge");
     drawn_softly(lower, node, Some(edge), |lower| {
         let radius = lower.number(node, "radius");

@@ -4,13 +4,12 @@ use crate::pattern::figure::{Figure, drawn};
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 use std::f64::consts::FRAC_PI_2;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "cloverleaf",
     aliases: &["clover", "quatrefoil", "four_leaf"],
     category: Category::Pattern,
@@ -30,41 +29,22 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "radius",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "From the centre to the tip of a leaf.",
-        )
-        .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
-        .unit("uv"),
+        port::pair("center", [0.0, 0.0], "The centre.").unit("uv"),
+        port::number("radius", 0.5, "From the centre to the tip of a leaf.")
+            .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
+            .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["center", "radius"]),
-    example: r##"{
-  "version": 1,
-  "name": "cloverleaf_example",
-  "nodes": {
+    example: example! { "cloverleaf", r##"
     "cloverleaf": { "type": "cloverleaf", "inputs": { "center": [0.5, 0.5], "radius": 0.4 } }
-  },
-  "outputs": { "out": { "node": "cloverleaf" } }
-}"##,
+"## },
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// Edges of a quarter of a circle.
 const EDGES: usize = 12;
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     drawn(lower, node, |lower| {
         let radius = lower.number(node, "radius");
         let zero = lower.b().float(0.0);

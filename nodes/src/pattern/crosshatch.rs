@@ -6,13 +6,12 @@ use crate::pattern::pulse::Pulse;
 use crate::pattern::separable::{Pattern, Term, Terms, filtered};
 use crate::pattern::tiling::{self, hatch};
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "crosshatch",
     aliases: &[
         "hatch",
@@ -48,32 +47,19 @@ static SPEC: NodeSpec = NodeSpec {
         TEXCOORD,
         UVTILING,
         UVOFFSET,
-        PortSpec::new(
-            "thickness",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.05),
-            "The width of a line.",
-        )
-        .range(Range::hard(0.0, 1.0))
-        .unit("cells"),
+        port::number("thickness", 0.05, "The width of a line.")
+            .range(Range::hard(0.0, 1.0))
+            .unit("cells"),
         STAGGERED,
     ],
     output: OutputType::Exactly(Type::Color3),
     class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset", "thickness"]),
-    example: r#"{
-  "version": 1,
-  "name": "crosshatch_example",
-  "nodes": {
+    example: example! { "crosshatch", r#"
     "crosshatch": { "type": "crosshatch", "inputs": { "uvtiling": [8, 8], "thickness": 0.2 } }
-  },
-  "outputs": { "out": { "node": "crosshatch" } }
-}"#,
+"# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let lines = if lower.flag(node, "staggered") {
         staggered(lower, node)
     } else {

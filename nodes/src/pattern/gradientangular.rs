@@ -5,12 +5,11 @@ use crate::pattern::angle::polar;
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::sawtooth::Sawtooth;
 use crate::pattern::unless::pattern_unless;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "gradientangular",
     aliases: &[
         "angular_gradient",
@@ -33,38 +32,19 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.5, 0.5]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "rotate",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "What is added to the angle.",
-        )
-        .range(Range::soft(-180.0, 180.0))
-        .unit("degrees"),
+        port::pair("center", [0.5, 0.5], "The centre.").unit("uv"),
+        port::number("rotate", 0.0, "What is added to the angle.")
+            .range(Range::soft(-180.0, 180.0))
+            .unit("degrees"),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["center", "rotate"]),
-    example: r##"{
-  "version": 1,
-  "name": "gradientangular_example",
-  "nodes": {
+    example: example! { "gradientangular", r##"
     "gradientangular": { "type": "gradientangular", "inputs": { "rotate": 40 } }
-  },
-  "outputs": { "out": { "node": "gradientangular" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
     let degrees = lower.signal(node, "rotate");
     let [x, y] = [0, 1].map(|i| difference(&texcoord[i], &centre[i]));

@@ -4,13 +4,12 @@ use crate::componentwise::{difference, transfer};
 use crate::pattern::angle::polar;
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::Piecewise;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "gradientradial",
     aliases: &["radial_gradient", "spherical_gradient", "circular_gradient"],
     category: Category::Pattern,
@@ -27,38 +26,19 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.5, 0.5]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "radius",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "Where the gradient ends.",
-        )
-        .range(Range::hard(1e-6, f32::MAX).with_soft(0.01, 1.0))
-        .unit("uv"),
+        port::pair("center", [0.5, 0.5], "The centre.").unit("uv"),
+        port::number("radius", 0.5, "Where the gradient ends.")
+            .range(Range::hard(1e-6, f32::MAX).with_soft(0.01, 1.0))
+            .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["center", "radius"]),
-    example: r##"{
-  "version": 1,
-  "name": "gradientradial_example",
-  "nodes": {
+    example: example! { "gradientradial", r##"
     "gradientradial": { "type": "gradientradial", "inputs": { "radius": 0.6 } }
-  },
-  "outputs": { "out": { "node": "gradientradial" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let (texcoord, centre) = (lower.bundle(node, "texcoord"), lower.bundle(node, "center"));
     let radius = lower.number(node, "radius");
     let [x, y] = [0, 1].map(|i| difference(&texcoord[i], &centre[i]));

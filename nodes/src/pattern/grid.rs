@@ -4,13 +4,12 @@ use crate::pattern::checkerboard::tiled;
 use crate::pattern::pulse::Pulse;
 use crate::pattern::separable::{Pattern, Term, Terms, filtered};
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::ir::{Builder, Float};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "grid",
     aliases: &["tile_lines", "mesh", "wireframe"],
     category: Category::Pattern,
@@ -34,70 +33,41 @@ static SPEC: NodeSpec = NodeSpec {
         TEXCOORD,
         UVTILING,
         UVOFFSET,
-        PortSpec::new(
-            "thickness",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.05),
-            "The width of a line.",
-        )
-        .range(Range::hard(0.0, 1.0))
-        .unit("cells"),
+        port::number("thickness", 0.05, "The width of a line.")
+            .range(Range::hard(0.0, 1.0))
+            .unit("cells"),
         STAGGERED,
     ],
     output: OutputType::Exactly(Type::Color3),
     class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset", "thickness"]),
-    example: r#"{
-  "version": 1,
-  "name": "grid_example",
-  "nodes": {
+    example: example! { "grid", r#"
     "grid": { "type": "grid", "inputs": { "uvtiling": [6, 9], "thickness": 0.12, "staggered": true } }
-  },
-  "outputs": { "out": { "node": "grid" } }
-}"#,
+"# },
 };
 
 /// Where.
-pub(crate) const TEXCOORD: PortSpec = PortSpec::new(
-    "texcoord",
-    PortType::Exactly(Type::Vector2),
-    Default::Surface,
-    "The coordinates.",
-)
-.unit("uv");
+pub(crate) const TEXCOORD: PortSpec = port::surface("The coordinates.");
 
 /// How many.
-pub(crate) const UVTILING: PortSpec = PortSpec::new(
+pub(crate) const UVTILING: PortSpec = port::pair(
     "uvtiling",
-    PortType::Exactly(Type::Vector2),
-    Default::Vector2([1.0, 1.0]),
+    [1.0, 1.0],
     "How many cells a unit of texture space holds.",
 )
 .range(Range::soft(1.0, 64.0))
 .unit("cells per uv");
 
 /// Moved by how much.
-pub(crate) const UVOFFSET: PortSpec = PortSpec::new(
-    "uvoffset",
-    PortType::Exactly(Type::Vector2),
-    Default::Vector2([0.0, 0.0]),
-    "The shift, which is subtracted.",
-)
-.range(Range::soft(-1.0, 1.0))
-.unit("cells");
+pub(crate) const UVOFFSET: PortSpec =
+    port::pair("uvoffset", [0.0, 0.0], "The shift, which is subtracted.")
+        .range(Range::soft(-1.0, 1.0))
+        .unit("cells");
 
 /// Whether rows alternate.
-pub(crate) const STAGGERED: PortSpec = PortSpec::new(
-    "staggered",
-    PortType::Exactly(Type::Boolean),
-    Default::Boolean(false),
-    "Whether every other row is shifted.",
-)
-.uniform();
+pub(crate) const STAGGERED: PortSpec =
+    port::flag("staggered", false, "Whether every other row is shifted.").uniform();
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let staggered = lower.flag(node, "staggered");
     // A cell of the pattern has two rows where they alternate.
     let position = tiled(lower, node, [1.0, if staggered { 0.5 } else { 1.0 }]);

@@ -4,12 +4,11 @@ use crate::pattern::figure::{Figure, drawn};
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "hexagon",
     aliases: &["hex"],
     category: Category::Pattern,
@@ -27,38 +26,19 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "radius",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "The distance of the sides from the centre.",
-        )
-        .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
-        .unit("uv"),
+        port::pair("center", [0.0, 0.0], "The centre.").unit("uv"),
+        port::number("radius", 0.5, "The distance of the sides from the centre.")
+            .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
+            .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["center", "radius"]),
-    example: r##"{
-  "version": 1,
-  "name": "hexagon_example",
-  "nodes": {
+    example: example! { "hexagon", r##"
     "hexagon": { "type": "hexagon", "inputs": { "center": [0.5, 0.5], "radius": 0.35 } }
-  },
-  "outputs": { "out": { "node": "hexagon" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     drawn(lower, node, |lower| {
         let radius = lower.number(node, "radius");
         let zero = lower.b().float(0.0);

@@ -5,13 +5,12 @@ use crate::picture::gather::Reading;
 use crate::picture::port::{COLORSPACE, FILE, TEXCOORD, UVOFFSET, UVTILING, planes, position};
 use crate::picture::pyramid::{Address, Layout, bake};
 use crate::picture::read::Pyramid;
+use crate::port;
 use mipless_codegen::ir::Vec2;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "image",
     aliases: &[
         "tiledimage",
@@ -49,32 +48,32 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         FILE,
-        PortSpec::new(
+        port::exactly(
+            Type::Color4,
             "default",
-            PortType::Exactly(Type::Color4),
-            Default::Float(0.0),
+            0.0,
             "What there is without a file.",
         )
         .uniform(),
         TEXCOORD,
         UVTILING,
         UVOFFSET,
-        PortSpec::new(
+        port::choice(
             "uaddressmode",
-            PortType::Choice(&["periodic", "clamp", "mirror"]),
-            Default::Choice("periodic"),
+            &["periodic", "clamp", "mirror"],
+            "periodic",
             "What lies left and right of the picture.",
         ),
-        PortSpec::new(
+        port::choice(
             "vaddressmode",
-            PortType::Choice(&["periodic", "clamp", "mirror"]),
-            Default::Choice("periodic"),
+            &["periodic", "clamp", "mirror"],
+            "periodic",
             "What lies above and below the picture.",
         ),
-        PortSpec::new(
+        port::choice(
             "signature",
-            PortType::Choice(&["color3", "color4", "float", "vector2", "vector3", "vector4"]),
-            Default::Choice("color3"),
+            &["color3", "color4", "float", "vector2", "vector3", "vector4"],
+            "color3",
             "The type of the result.",
         ),
         COLORSPACE,
@@ -85,9 +84,6 @@ static SPEC: NodeSpec = NodeSpec {
         "nodes": { "image": { "type": "image", "inputs": { "file": "images/granite.png", "uvtiling": [2, 2] } } },
         "outputs": { "out": { "node": "image" } } }"#,
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// The longest footprint that is not widened.
 const PARTS: Parts = Parts {
@@ -103,7 +99,7 @@ fn address(lower: &Lower<'_, '_>, node: &Node, port: &str) -> Address {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let channels = node.ty.components();
     let Some(picture) = lower.picture(node, "file") else {
         let mut bundle = lower.bundle(node, "default");

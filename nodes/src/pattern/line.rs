@@ -5,13 +5,12 @@ use crate::pattern::figure::{Figure, drawn};
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 use std::f64::consts::PI;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "line",
     aliases: &["segment", "capsule"],
     category: Category::Pattern,
@@ -32,55 +31,24 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.0, 0.0]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "radius",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.1),
-            "Half the width.",
-        )
-        .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 0.5))
-        .unit("uv"),
-        PortSpec::new(
-            "point1",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.25, 0.25]),
-            "One end, from the centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "point2",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.75, 0.75]),
-            "The other end, from the centre.",
-        )
-        .unit("uv"),
+        port::pair("center", [0.0, 0.0], "The centre.").unit("uv"),
+        port::number("radius", 0.1, "Half the width.")
+            .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 0.5))
+            .unit("uv"),
+        port::pair("point1", [0.25, 0.25], "One end, from the centre.").unit("uv"),
+        port::pair("point2", [0.75, 0.75], "The other end, from the centre.").unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["center", "radius", "point1", "point2"]),
-    example: r##"{
-  "version": 1,
-  "name": "line_example",
-  "nodes": {
+    example: example! { "line", r##"
     "line": { "type": "line", "inputs": { "radius": 0.08, "point1": [0.2, 0.3], "point2": [0.8, 0.6] } }
-  },
-  "outputs": { "out": { "node": "line" } }
-}"##,
+"## },
 };
-
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
 
 /// Corners of a half circle; their number keeps the area.
 const CORNERS: usize = 24;
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     drawn(lower, node, |lower| {
         let radius = lower.number(node, "radius");
         let [from, to] = ["point1", "point2"].map(|port| numbers(lower, node, port));

@@ -2,9 +2,10 @@
 
 use crate::componentwise::{binary, product, transfer};
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type};
+use mipless_graph::{Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType};
 
 /// One row a node: which coordinate, and its ends by their ports and by what the pages call them.
 macro_rules! ramps {
@@ -38,7 +39,7 @@ macro_rules! ramps {
                 inputs: &[
                     PortSpec::new($from, PortType::Any, Default::Float(0.0), concat!("The value at the ", $from_side, ".")),
                     PortSpec::new($to, PortType::Any, Default::Float(0.0), concat!("The value at the ", $to_side, ".")),
-                    PortSpec::new("texcoord", PortType::Exactly(Type::Vector2), Default::Surface, "The coordinates.").unit("uv"),
+                    port::surface("The coordinates."),
                 ],
                 output: OutputType::Widest,
                 class: |inputs| pattern_unless(inputs, &[$from, $to]),

@@ -3,11 +3,12 @@
 use crate::componentwise::{product, transfer};
 use crate::pattern::ramp::between;
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::Piecewise;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "ramp4",
     aliases: &["four_corner_gradient", "bilinear"],
     category: Category::Pattern,
@@ -25,54 +26,20 @@ static SPEC: NodeSpec = NodeSpec {
             frequency distribution*. MaterialX 1.39 specification, node `ramp4`.",
     },
     inputs: &[
-        PortSpec::new(
-            "valuetl",
-            PortType::Any,
-            Default::Float(0.0),
-            "The value at the top left.",
-        ),
-        PortSpec::new(
-            "valuetr",
-            PortType::Any,
-            Default::Float(0.0),
-            "The value at the top right.",
-        ),
-        PortSpec::new(
-            "valuebl",
-            PortType::Any,
-            Default::Float(0.0),
-            "The value at the bottom left.",
-        ),
-        PortSpec::new(
-            "valuebr",
-            PortType::Any,
-            Default::Float(0.0),
-            "The value at the bottom right.",
-        ),
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
+        port::any("valuetl", 0.0, "The value at the top left."),
+        port::any("valuetr", 0.0, "The value at the top right."),
+        port::any("valuebl", 0.0, "The value at the bottom left."),
+        port::any("valuebr", 0.0, "The value at the bottom right."),
+        port::surface("The coordinates."),
     ],
     output: OutputType::Widest,
     class: |inputs| pattern_unless(inputs, &["valuetl", "valuetr", "valuebl", "valuebr"]),
-    example: r##"{
-  "version": 1,
-  "name": "ramp4_example",
-  "nodes": {
+    example: example! { "ramp4", r##"
     "ramp4": { "type": "ramp4", "inputs": { "valuetl": "#20303c", "valuetr": "#e8c27a", "valuebl": "#7a4a2b", "valuebr": "#d8d4c8" } }
-  },
-  "outputs": { "out": { "node": "ramp4" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let texcoord = lower.bundle(node, "texcoord");
     let b = lower.b();
     let clamp = Piecewise::clamp(b.float(0.0), b.float(1.0));

@@ -5,12 +5,11 @@ use crate::pattern::figure::{Figure, drawn_softly};
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use crate::port;
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "shape",
     aliases: &["polygon", "star", "ngon", "regular_polygon"],
     category: Category::Pattern,
@@ -31,69 +30,38 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
-            "shape",
-            PortType::Choice(&["polygon", "star"]),
-            Default::Choice("polygon"),
-            "Which figure.",
-        ),
-        PortSpec::new(
+        port::choice("shape", &["polygon", "star"], "polygon", "Which figure."),
+        port::integer(
             "sides",
-            PortType::Exactly(Type::Integer),
-            Default::Integer(5),
+            5,
             "How many corners a polygon, or points a star, has.",
         )
         .uniform()
         .range(Range::hard(3.0, 64.0).with_soft(3.0, 12.0)),
-        PortSpec::new(
-            "center",
-            PortType::Exactly(Type::Vector2),
-            Default::Vector2([0.5, 0.5]),
-            "The centre.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "radius",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.4),
-            "The distance of the corners.",
-        )
-        .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
-        .unit("uv"),
-        PortSpec::new(
+        port::pair("center", [0.5, 0.5], "The centre.").unit("uv"),
+        port::number("radius", 0.4, "The distance of the corners.")
+            .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0))
+            .unit("uv"),
+        port::number(
             "inner",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
+            0.5,
             "The distance of the corners between the points of a star, as a share of the radius.",
         )
         .uniform()
         .range(Range::hard(0.0, 1.0)),
-        PortSpec::new(
-            "rotate",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
-            "The angle, counter-clockwise.",
-        )
-        .range(Range::soft(-180.0, 180.0))
-        .unit("degrees"),
+        port::number("rotate", 0.0, "The angle, counter-clockwise.")
+            .range(Range::soft(-180.0, 180.0))
+            .unit("degrees"),
         EDGE,
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["center", "radius", "rotate", "edge"]),
-    example: r##"{
-  "version": 1,
-  "name": "shape_example",
-  "nodes": {
+    example: example! { "shape", r##"
     "shape": { "type": "shape", "inputs": { "shape": "star", "sides": 7, "rotate": 10 } }
-  },
-  "outputs": { "out": { "node": "shape" } }
-}"##,
+"## },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let edge = lower.number(node, "edge");
     drawn_softly(lower, node, Some(edge), |lower| {
         let sides = lower.integer(node, "sides").clamp(3, 64) as usize;

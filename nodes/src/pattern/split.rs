@@ -3,9 +3,10 @@
 use crate::componentwise::{binary, transfer};
 use crate::pattern::ramp::between;
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type};
+use mipless_graph::{Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType};
 
 /// One row a node: which coordinate, and its halves by their ports and by what the pages call them.
 macro_rules! splits {
@@ -38,8 +39,8 @@ macro_rules! splits {
                 inputs: &[
                     PortSpec::new($from, PortType::Any, Default::Float(0.0), concat!("The value at the ", $from_side, ".")),
                     PortSpec::new($to, PortType::Any, Default::Float(0.0), concat!("The value at the ", $to_side, ".")),
-                    PortSpec::new("center", PortType::Exactly(Type::Float), Default::Float(0.5), "Where one value meets the other.").unit("uv"),
-                    PortSpec::new("texcoord", PortType::Exactly(Type::Vector2), Default::Surface, "The coordinates.").unit("uv"),
+                    port::number("center", 0.5, "Where one value meets the other.").unit("uv"),
+                    port::surface("The coordinates."),
                 ],
                 output: OutputType::Widest,
                 class: |inputs| pattern_unless(inputs, &[$from, $to, "center"]),

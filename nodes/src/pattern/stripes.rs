@@ -1,16 +1,15 @@
 //! Parallel stripes.
 
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::{Signal, SquareWave};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
 use crate::componentwise::{product, sum, transfer};
 use crate::coordinate::rotate2d::turn;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "stripes",
     aliases: &["bands", "lines"],
     category: Category::Pattern,
@@ -29,53 +28,28 @@ static SPEC: NodeSpec = NodeSpec {
             1981, *Estimation of the mean of a multivariate normal distribution*, lemma 1.",
     },
     inputs: &[
-        PortSpec::new(
-            "texcoord",
-            PortType::Exactly(Type::Vector2),
-            Default::Surface,
-            "The coordinates.",
-        )
-        .unit("uv"),
-        PortSpec::new(
-            "frequency",
-            PortType::Exactly(Type::Float),
-            Default::Float(8.0),
-            "How many stripes.",
-        )
-        .range(Range::soft(1.0, 64.0))
-        .unit("cycles per uv"),
-        PortSpec::new(
+        port::surface("The coordinates."),
+        port::number("frequency", 8.0, "How many stripes.")
+            .range(Range::soft(1.0, 64.0))
+            .unit("cycles per uv"),
+        port::number(
             "rotate",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
+            0.0,
             "The angle from the u axis to the direction across the stripes, counter-clockwise.",
         )
         .range(Range::soft(-180.0, 180.0))
         .unit("degrees"),
-        PortSpec::new(
-            "width",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.5),
-            "The share of the period that is 1.",
-        )
-        .range(Range::hard(0.0, 1.0)),
+        port::number("width", 0.5, "The share of the period that is 1.")
+            .range(Range::hard(0.0, 1.0)),
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["frequency", "rotate", "width"]),
-    example: r#"{
-  "version": 1,
-  "name": "stripes_example",
-  "nodes": {
+    example: example! { "stripes", r#"
     "stripes": { "type": "stripes", "inputs": { "frequency": 12, "rotate": 30, "width": 0.35 } }
-  },
-  "outputs": { "out": { "node": "stripes" } }
-}"#,
+"# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let texcoord = lower.bundle(node, "texcoord");
     let [frequency, rotate] = ["frequency", "rotate"].map(|port| lower.signal(node, port));
     let width = lower.number(node, "width").clamp(0.0, 1.0);

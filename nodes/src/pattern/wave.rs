@@ -5,13 +5,12 @@ use crate::noise::field::Spread;
 use crate::pattern::grid::TEXCOORD;
 use crate::pattern::stripes::along;
 use crate::pattern::unless::pattern_unless;
+use crate::port;
 use mipless_codegen::moments::{LinearWave, Signal, Sine, SquareWave};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "wave",
     aliases: &["wave_texture", "pattern", "x_wave", "y_wave", "waveform"],
     category: Category::Pattern,
@@ -32,32 +31,25 @@ static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         TEXCOORD,
-        PortSpec::new(
+        port::choice(
             "shape",
-            PortType::Choice(&["sine", "triangle", "saw", "square"]),
-            Default::Choice("sine"),
+            &["sine", "triangle", "saw", "square"],
+            "sine",
             "The form of the wave.",
         ),
-        PortSpec::new(
-            "frequency",
-            PortType::Exactly(Type::Float),
-            Default::Float(8.0),
-            "How many waves.",
-        )
-        .range(Range::soft(1.0, 64.0))
-        .unit("cycles per uv"),
-        PortSpec::new(
+        port::number("frequency", 8.0, "How many waves.")
+            .range(Range::soft(1.0, 64.0))
+            .unit("cycles per uv"),
+        port::number(
             "rotate",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
+            0.0,
             "The angle from the u axis to the direction across the waves, counter-clockwise.",
         )
         .range(Range::soft(-180.0, 180.0))
         .unit("degrees"),
-        PortSpec::new(
+        port::number(
             "phase",
-            PortType::Exactly(Type::Float),
-            Default::Float(0.0),
+            0.0,
             "What is added to the phase; a noise makes the waves wind.",
         )
         .range(Range::soft(-1.0, 1.0))
@@ -65,21 +57,13 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Float),
     class: |inputs| pattern_unless(inputs, &["frequency", "rotate", "phase"]),
-    example: r#"{
-  "version": 1,
-  "name": "wave_example",
-  "nodes": {
+    example: example! { "wave", r#"
     "wind": { "type": "noise2d", "inputs": { "frequency": 4 } },
     "wave": { "type": "wave", "inputs": { "shape": "triangle", "frequency": 10, "rotate": 60, "phase": { "node": "wind" } } }
-  },
-  "outputs": { "out": { "node": "wave" } }
-}"#,
+"# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let texcoord = lower.bundle(node, "texcoord");
     let [frequency, rotate, phase] =
         ["frequency", "rotate", "phase"].map(|port| lower.signal(node, port));

@@ -3,10 +3,10 @@
 use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::moments::Piecewise;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "absval",
     aliases: &["abs", "absolute", "folds"],
     category: Category::Transfer,
@@ -32,10 +32,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let absolute = Piecewise::absolute(lower.b());
     unary(lower, node, "in", |lower, x| transfer(lower, x, &absolute))
 }

@@ -3,10 +3,10 @@
 use crate::componentwise::{ternary, transfer};
 use crate::port::any;
 use mipless_codegen::moments::Piecewise;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "clamp",
     aliases: &["limit", "saturate01", "math_clamp"],
     category: Category::Transfer,
@@ -42,10 +42,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     ternary(lower, node, ["in", "low", "high"], |lower, x, low, high| {
         if low.is_certain() && high.is_certain() {
             let clamp = Piecewise::clamp(low.flat_mean(), high.flat_mean());

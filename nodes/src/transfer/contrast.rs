@@ -2,10 +2,10 @@
 
 use crate::componentwise::{composed, product, ternary};
 use crate::port::any;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "contrast",
     aliases: &["tones_contrast"],
     category: Category::Transfer,
@@ -33,9 +33,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Linear but for a varying amount.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("amount") {
@@ -45,7 +42,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let ports = ["in", "amount", "pivot"];
     ternary(lower, node, ports, |lower, x, amount, pivot| {
         composed(lower, |lower| {

@@ -3,10 +3,10 @@
 use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::moments::Exponential;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "exp",
     aliases: &["exponential", "math_exp"],
     category: Category::Transfer,
@@ -35,10 +35,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     unary(lower, node, "in", |lower, x| {
         transfer(lower, x, &Exponential)
     })

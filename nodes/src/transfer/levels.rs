@@ -5,10 +5,10 @@ use crate::port::any;
 use crate::transfer::range::{DOCLAMP, interpolated, passed};
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Curve, Piecewise, RealPower, Signal, Transfer};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "levels",
     aliases: &["tones", "tone_curve"],
     category: Category::Transfer,
@@ -48,10 +48,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let limited = lower.flag(node, "doclamp");
     let input = lower.bundle(node, "in");
     let [low, high, gamma] = ["inlow", "inhigh", "gamma"].map(|port| numbers(lower, node, port));

@@ -4,10 +4,10 @@ use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::Curve;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "ln",
     aliases: &["log", "logarithm", "math_log"],
     category: Category::Transfer,
@@ -36,13 +36,10 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// What lies below counts as this.
 const LEAST: f32 = 1e-3;
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let least = lower.b().float(LEAST);
     let logarithm = Curve {
         function: limited_logarithm,

@@ -3,10 +3,10 @@
 use crate::componentwise::{binary, composed, product, quotient, transfer};
 use crate::port::any;
 use mipless_codegen::moments::LinearWave;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "modulo",
     aliases: &["mod", "fmod", "math_modulo", "wrap"],
     category: Category::Transfer,
@@ -35,10 +35,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let mut divisor = None;
     let out = binary(lower, node, ["in1", "in2"], |lower, x, y| {
         let is_number = y.cell.is_none() && y.is_certain();

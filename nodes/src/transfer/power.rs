@@ -3,10 +3,10 @@
 use crate::componentwise::{binary, transfer};
 use crate::port::any;
 use mipless_codegen::moments::{Polynomial, RealPower, Transfer};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "power",
     aliases: &["pow", "gamma", "safepower", "exponent", "math_power"],
     category: Category::Transfer,
@@ -42,16 +42,13 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// The exponent as a whole number that the closed form takes.
 fn whole(exponent: Option<f32>) -> Option<u32> {
     let n = exponent.filter(|n| n.fract() == 0.0 && (0.0..=Polynomial::MOST as f32).contains(n));
     n.map(|n| n as u32)
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     binary(lower, node, ["in1", "in2"], |lower, x, exponent| {
         if lower.mode().spreads() && !exponent.is_certain() {
             let inputs = [x.clone(), exponent.clone()];

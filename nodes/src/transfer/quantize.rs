@@ -2,10 +2,10 @@
 
 use crate::componentwise::unary;
 use crate::port::{any, number};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "quantize",
     aliases: &["posterize", "snap", "steps"],
     category: Category::Transfer,
@@ -36,10 +36,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let steps = lower.number(node, "steps");
     unary(lower, node, "in", |lower, x| {
         lower.algebra.floor(&(x * steps)) * (1.0 / steps)

@@ -1,16 +1,14 @@
 //! Affine map from a range to a range.
 
 use crate::componentwise::{numbers, product, transfer};
+use crate::port;
 use crate::port::any;
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Piecewise, Reciprocal, Signal, Transfer};
-use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Type,
-};
+use mipless_codegen::{Bundle, Lower};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "range",
     aliases: &["remap", "map_range", "maprange", "fit", "histogram_range"],
     category: Category::Transfer,
@@ -47,9 +45,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Limiting bends; varying bounds of the output multiply, and of the input count by their means.
 fn class(inputs: &dyn InputView) -> Behaviour {
     let varies = |ports: &[&str]| ports.iter().any(|port| inputs.varies(port));
@@ -63,15 +58,14 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 }
 
 /// Whether the result stays within the range of the output.
-pub(super) const DOCLAMP: PortSpec = PortSpec::new(
+pub(super) const DOCLAMP: PortSpec = port::flag(
     "doclamp",
-    PortType::Exactly(Type::Boolean),
-    Default::Boolean(false),
+    false,
     "Whether the result is limited to lie between outlow and outhigh.",
 )
 .uniform();
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let limited = lower.flag(node, "doclamp");
     let [input, outlow, outhigh] = ["in", "outlow", "outhigh"].map(|port| lower.bundle(node, port));
     let [low, high] = ["inlow", "inhigh"].map(|port| numbers(lower, node, port));

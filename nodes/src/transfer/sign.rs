@@ -3,10 +3,10 @@
 use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::moments::{Piecewise, Signal};
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "sign",
     aliases: &["signum", "math_sign"],
     category: Category::Transfer,
@@ -32,10 +32,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let zero = lower.b().float(0.0);
     unary(lower, node, "in", |lower, x| {
         if lower.mode().spreads() && !x.is_certain() {

@@ -3,10 +3,10 @@
 use crate::componentwise::{ternary, transfer};
 use crate::port::any;
 use mipless_codegen::moments::Piecewise;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "smoothstep",
     aliases: &["smooth_step", "tones_range", "ease"],
     category: Category::Transfer,
@@ -39,10 +39,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     ternary(lower, node, ["in", "low", "high"], |lower, x, low, high| {
         let smooth = Piecewise::smoothstep(low.flat_mean(), high.flat_mean());
         transfer(lower, x, &smooth)

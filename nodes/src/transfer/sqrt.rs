@@ -3,10 +3,10 @@
 use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::moments::RealPower;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "sqrt",
     aliases: &["square_root", "math_sqrt"],
     category: Category::Transfer,
@@ -33,10 +33,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let power = lower.b().float(0.5);
     unary(lower, node, "in", |lower, x| {
         transfer(lower, x, &RealPower { power })

@@ -3,10 +3,10 @@
 use crate::componentwise::{transfer, unary};
 use crate::port::{any, number};
 use mipless_codegen::moments::SquareWave;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "squarewave",
     aliases: &["square_wave", "pulse", "pulse_wave"],
     category: Category::Transfer,
@@ -36,10 +36,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let width = lower.number(node, "width");
     unary(lower, node, "in", |lower, x| {
         transfer(lower, x, &SquareWave { width })

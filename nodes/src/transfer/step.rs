@@ -3,10 +3,10 @@
 use crate::componentwise::{binary, difference, transfer};
 use crate::port::any;
 use mipless_codegen::moments::Piecewise;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "step",
     aliases: &["threshold", "tones_step", "histogram_scan", "greater_than"],
     category: Category::Transfer,
@@ -37,10 +37,7 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let zero = lower.b().float(0.0);
     binary(lower, node, ["in", "edge"], |lower, x, edge| {
         // The difference is small where it matters: a position keeps its detail far from 0.

@@ -3,11 +3,11 @@
 use crate::componentwise::{composed, quotient, transfer, unary};
 use crate::port::any;
 use mipless_codegen::moments::Sine;
-use mipless_codegen::{Bundle, Lower, NodeDef};
+use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 use std::f32::consts::FRAC_PI_2;
 
-static SPEC: NodeSpec = NodeSpec {
+pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "tan",
     aliases: &["tangent", "math_tangent"],
     category: Category::Transfer,
@@ -33,9 +33,6 @@ static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-/// The definition.
-pub(crate) const DEF: NodeDef = NodeDef { spec: &SPEC, lower };
-
 /// Of a number, a number.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("in") {
@@ -48,7 +45,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     unary(lower, node, "in", |lower, x| {
         composed(lower, |lower| {
             let x = lower.algebra.expose(x);
