@@ -294,7 +294,7 @@ fn nested(module: &mut Module) {
     let inner = inner_sum(module);
     let b = &Builder::new("outer", "Runs the inner sum.");
     let index = b.uint_param("index");
-    let [sum, other] = ["sum", "other"].map(|name| b.float_param(name));
+    let [sum, other] = b.float_params(["sum", "other"]);
     let [turns, size] = ["turns", "size"].map(|name| b.uint_param(name));
     let scale = b.float_param("scale");
     let (next, turns) = b.fold(&inner, size - index, (other, turns), scale);

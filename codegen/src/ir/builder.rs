@@ -91,6 +91,11 @@ impl Builder {
         self.param(name)
     }
 
+    /// Further f32 parameters.
+    pub fn float_params<const N: usize>(&self, names: [impl Into<String>; N]) -> [Float<'_>; N] {
+        names.map(|name| self.float_param(name))
+    }
+
     /// A further parameter of a signed integer.
     pub fn int_param(&self, name: impl Into<String>) -> Int<'_> {
         self.param(name)
@@ -123,6 +128,28 @@ impl Builder {
     pub fn result<'b>(&'b self, name: impl Into<String>, value: impl Into<Scalar<'b>>) {
         let value = value.into().value();
         self.core.borrow_mut().result(name, value);
+    }
+
+    /// Further results by their names.
+    pub fn results<'b, N: Into<String>, S: Into<Scalar<'b>>>(
+        &'b self,
+        names: impl IntoIterator<Item = N>,
+        values: impl IntoIterator<Item = S>,
+    ) {
+        for (name, value) in names.into_iter().zip(values) {
+            self.result(name, value);
+        }
+    }
+
+    /// The results of the body of a fold that adds up: each number of the state more by its part.
+    pub fn sums<'b, N: Into<String>>(
+        &'b self,
+        names: impl IntoIterator<Item = N>,
+        state: impl IntoIterator<Item = Float<'b>>,
+        parts: impl IntoIterator<Item = Float<'b>>,
+    ) {
+        let sums = state.into_iter().zip(parts).map(|(sum, part)| sum + part);
+        self.results(names, sums);
     }
 
     /// The sum; 0 of nothing.

@@ -231,8 +231,8 @@ mod tests {
         let mut module = Module::default();
         let body = Builder::new("body", "A test.");
         body.uint_param("index");
-        let state = ["read", "feeds", "idle"].map(|name| body.float_param(name));
-        let [used, unused] = ["used", "unused"].map(|name| body.float_param(name));
+        let state = body.float_params(["read", "feeds", "idle"]);
+        let [used, unused] = body.float_params(["used", "unused"]);
         body.result("read", state[0] + state[1]);
         body.result("feeds", state[1] * used);
         body.result("idle", state[2] * unused);

@@ -63,7 +63,7 @@ impl Compiler<'_> {
 
 fn function(module: &mut Module, name: &str, build: &Build) -> FunctionRef {
     let b = &Builder::new(format!("{name}_of"), "A function of two signals.");
-    let place = ["x", "y"].map(|name| b.float_param(name));
+    let place = b.float_params(["x", "y"]);
     for (i, value) in build(b, module, place).into_iter().enumerate() {
         b.result(format!("value_{i}"), value);
     }

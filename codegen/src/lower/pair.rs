@@ -376,7 +376,7 @@ fn gains(compiler: &Compiler<'_>, index: usize, pair: &Pair<'_>) -> bool {
     let mut closed = Module::default();
     let ranges = [&pair.first, &pair.second].map(|entry| entry.signal.range);
     function(&alone, &mut closed, index, pair, Mode::Local, |b| {
-        let [x, sd_x, y, sd_y] = ["x", "sd_x", "y", "sd_y"].map(|name| b.float_param(name));
+        let [x, sd_x, y, sd_y] = b.float_params(["x", "sd_x", "y", "sd_y"]);
         let mut signals = [x, y].map(Signal::certain);
         signals[0].g[0] = sd_x;
         signals[1].g[1] = sd_y;

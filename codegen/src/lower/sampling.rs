@@ -194,7 +194,7 @@ pub(super) fn split(compiler: &Compiler<'_>, module: &mut Module, name: &str, k:
     let state: Vec<Float<'_>> = (0..length)
         .map(|i| b.float_param(format!("state_{i}")))
         .collect();
-    let [far, near] = ["root_share", "root_rest"].map(|name| b.float_param(name));
+    let [far, near] = b.float_params(["root_share", "root_rest"]);
     let [x, y, weight, share] = [0u32, 1, 2, 3].map(|i| b.load(table, index * 4 + i));
     let shift = far * s;
     let place = Arguments::declare(b, compiler.graph).moved([x * shift, y * shift]);

@@ -142,7 +142,7 @@ fn part(
 ) -> FunctionRef {
     let name = super::identifier(&compiler.graph.nodes[index].name);
     let b = &Builder::new(format!("{name}_part"), "A function of a narrow Gaussian.");
-    let [mean, sd] = ["mean", "sd"].map(|name| b.float_param(name));
+    let [mean, sd] = b.float_params(["mean", "sd"]);
     let x = Signal {
         g: Vec2([sd, b.float(0.0)]),
         ..Signal::certain(mean).with_range(chain.signal.range)

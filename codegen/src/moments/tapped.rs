@@ -90,7 +90,7 @@ impl Tapped<'_> {
             format!("{name}_moments"),
             "The moments of a function of a Gaussian, from those of its parts.",
         );
-        let [mean, sd] = ["mean", "sd"].map(|name| b.float_param(name));
+        let [mean, sd] = b.float_params(["mean", "sd"]);
         let parameters = parameters(b);
         let narrow = sd * rule.tau as f32;
         let middle = b.call(part, (mean, narrow, &parameters));
@@ -143,7 +143,7 @@ fn turn(
     };
     let index = b.uint_param("index");
     let sums = numbers("sum", SUMS * components);
-    let [mean, sd, narrow] = ["mean", "sd", "narrow"].map(|name| b.float_param(name));
+    let [mean, sd, narrow] = b.float_params(["mean", "sd", "narrow"]);
     let middle = numbers("middle", 3 * components);
     let parameters = parameters(b);
 

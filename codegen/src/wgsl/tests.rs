@@ -49,7 +49,7 @@ fn marble() -> Program {
     let mut module = Module::default();
     let b = &Builder::new("octave", "One octave of something.");
     let index = b.uint_param("index");
-    let [mean, slope, x] = ["mean", "slope", "x"].map(|name| b.float_param(name));
+    let [mean, slope, x] = b.float_params(["mean", "slope", "x"]);
     let wave = (index.to_float() * x).sin();
     b.result("mean", mean + wave);
     b.result("slope", slope * wave);
@@ -158,9 +158,9 @@ fn parameters_have_the_uniform_layout_and_outputs_may_be_of_any_type() {
     let b = &entry("kinds");
     let (_, [_, v, ..]) = footprint(b);
     let on = b.param::<bool>("on");
-    let tint = ["r", "g", "b"].map(|name| b.float_param(name));
+    let tint = b.float_params(["r", "g", "b"]);
     let steps = b.int_param("steps");
-    let [_, y] = ["x", "y"].map(|name| b.float_param(name));
+    let [_, y] = b.float_params(["x", "y"]);
     b.result("steps", steps.max(i32::MIN));
     b.result("on", on);
     for value in [on.select(tint[0], y), tint[1], tint[2], v] {
@@ -291,7 +291,7 @@ fn hostile_names_are_made_safe_and_unique() {
 fn long_program(instructions: usize, seed: u32, near: u32) -> Program {
     let mut module = Module::default();
     let h = &Builder::new("helper", "A helper.");
-    let [x, y] = ["x", "y"].map(|name| h.float_param(name));
+    let [x, y] = h.float_params(["x", "y"]);
     h.result("sum", x + y);
     h.result("product", x * y);
     let helper = h.finish(&mut module);

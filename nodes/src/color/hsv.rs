@@ -51,10 +51,8 @@ pub(crate) fn to_rgb([hue, saturation, value]: [Float<'_>; 3]) -> [Float<'_>; 3]
 pub(super) fn to_hsv_function(module: &mut Module) -> FunctionRef {
     let doc = "Hue in turns, saturation and value of a colour.";
     let b = &Builder::new("rgb_to_hsv", doc);
-    let hsv = to_hsv(["red", "green", "blue"].map(|name| b.float_param(name)));
-    for (name, value) in ["hue", "saturation", "value"].into_iter().zip(hsv) {
-        b.result(name, value);
-    }
+    let hsv = to_hsv(b.float_params(["red", "green", "blue"]));
+    b.results(["hue", "saturation", "value"], hsv);
     b.finish(module)
 }
 
@@ -62,14 +60,11 @@ pub(super) fn to_hsv_function(module: &mut Module) -> FunctionRef {
 fn adjust_function(module: &mut Module) -> FunctionRef {
     let doc = "A colour with its hue turned, its saturation and its value scaled.";
     let b = &Builder::new("hsv_adjust", doc);
-    let rgb = ["red", "green", "blue"].map(|name| b.float_param(name));
-    let [turn, saturate, brighten] =
-        ["turn", "saturate", "brighten"].map(|name| b.float_param(name));
+    let rgb = b.float_params(["red", "green", "blue"]);
+    let [turn, saturate, brighten] = b.float_params(["turn", "saturate", "brighten"]);
     let [hue, saturation, value] = to_hsv(rgb);
     let rgb = to_rgb([hue + turn, saturation * saturate, value * brighten]);
-    for (name, value) in ["new_red", "new_green", "new_blue"].into_iter().zip(rgb) {
-        b.result(name, value);
-    }
+    b.results(["new_red", "new_green", "new_blue"], rgb);
     b.finish(module)
 }
 

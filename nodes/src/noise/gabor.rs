@@ -156,7 +156,7 @@ fn build(module: &mut Module, mode: Mode, gabor: Gabor, complex: bool) -> Functi
     let row = row(module, kernel);
     let b = &Builder::new("gabor", "A sum of filtered Gabor kernels.");
     let ([cell_x, cell_y], [x, y]) = declared(b);
-    let orientation = Vec2(["cosine", "sine"].map(|name| b.float_param(name)));
+    let orientation = Vec2(b.float_params(["cosine", "sine"]));
     let seed = lattice_seed(b, gabor.seed, 0x6a09_e667);
     let before = vec![b.float(0.0); kernel.sums()];
     let alpha = gabor.alpha();

@@ -169,8 +169,8 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
         .collect();
     let rest = mode.spreads().then(|| b.float_param("rest"));
     let state = Octave::declare(b, octaves);
-    let covariance = Sym2(["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name)));
-    let eigenvalues = ["s_major", "s_minor"].map(|name| b.float_param(name));
+    let covariance = Sym2(b.float_params(["s_xx", "s_xy", "s_yy"]));
+    let eigenvalues = b.float_params(["s_major", "s_minor"]);
 
     // The footprint in cells of this octave.
     let area = state.scale.square().min(1e6);

@@ -158,14 +158,12 @@ const SUMS: [&str; 9] = [
 fn one_more_hue(module: &mut Module) -> FunctionRef {
     let b = &Builder::new("random_hue", "One more of the hues of random colours.");
     let index = b.uint_param("index");
-    let sums = SUMS.map(|name| b.float_param(name));
-    let bounds = ["hue_low", "hue_high"].map(|name| b.float_param(name));
+    let sums = b.float_params(SUMS);
+    let bounds = b.float_params(["hue_low", "hue_high"]);
     let hue = between((index.to_float() + 0.5) * (1.0 / HUES as f32), bounds);
     let color = to_rgb([hue, b.float(1.0), b.float(1.0)]);
     let products = pairs(3).map(|(i, k)| color[i] * color[k]);
     let parts = color.into_iter().chain(products);
-    for ((name, sum), part) in SUMS.into_iter().zip(sums).zip(parts) {
-        b.result(name, sum + part);
-    }
+    b.sums(SUMS, sums, parts);
     b.finish(module)
 }

@@ -60,7 +60,7 @@ fn build(module: &mut Module, mode: Mode, waves: &[Wave]) -> FunctionRef {
         }
     }
     let (cells, place) = declared(b);
-    let covariance = Sym2(["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name)));
+    let covariance = Sym2(b.float_params(["s_xx", "s_xy", "s_yy"]));
     let zero = b.float(0.0);
     let mut sums = [zero; 6];
     let mut left = Energy::none(b);
@@ -106,9 +106,7 @@ fn build(module: &mut Module, mode: Mode, waves: &[Wave]) -> FunctionRef {
     }
     let energy: f32 = waves.iter().map(|w| 0.5 * w.amplitude * w.amplitude).sum();
     let rest = left.removed(mode, energy, sums[0], covariance);
-    for (name, sum) in PARTS.into_iter().zip(sums.into_iter().chain([rest])) {
-        b.result(name, sum);
-    }
+    b.results(PARTS, sums.into_iter().chain([rest]));
     b.finish(module)
 }
 

@@ -19,10 +19,10 @@ fn chord(module: &mut Module) -> FunctionRef {
     let table = module.table("chords", legendre(CHORDS as usize));
     let b = &Builder::new("disc_chord", "One more chord of a disc.");
     let index = b.uint_param("index");
-    let state = NAMES.map(|name| b.float_param(name));
-    let [middle, half, radius] = ["middle", "half", "radius"].map(|name| b.float_param(name));
-    let [x, y] = ["x", "y"].map(|name| b.float_param(name));
-    let [inverse_x, inverse_y] = ["inverse_x", "inverse_y"].map(|name| b.float_param(name));
+    let state = b.float_params(NAMES);
+    let [middle, half, radius] = b.float_params(["middle", "half", "radius"]);
+    let [x, y] = b.float_params(["x", "y"]);
+    let [inverse_x, inverse_y] = b.float_params(["inverse_x", "inverse_y"]);
     let first = index * 2;
     let (node, weight) = (b.load(table, first), b.load(table, first + 1));
     // u = (15t − 10t³ + 3t⁵)/8, du = 15/8 (1 − t²)² dt.
@@ -51,9 +51,7 @@ fn chord(module: &mut Module) -> FunctionRef {
         at.z * flow,
         (at.z.square() + -1.0) * span,
     ];
-    for ((name, sum), part) in NAMES.into_iter().zip(state).zip(parts) {
-        b.result(name, sum + w * part);
-    }
+    b.sums(NAMES, state, parts.map(|part| w * part));
     b.finish(module)
 }
 
@@ -65,8 +63,8 @@ fn chord(module: &mut Module) -> FunctionRef {
 pub(crate) fn function(module: &mut Module) -> FunctionRef {
     let chord = chord(module);
     let b = &Builder::new("disc", "The measure of a disc.");
-    let [x, y, radius] = ["x", "y", "radius"].map(|name| b.float_param(name));
-    let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+    let [x, y, radius] = b.float_params(["x", "y", "radius"]);
+    let covariance = Sym2(b.float_params(["xx", "xy", "yy"]));
 
     // The axes of the footprint: the longer of two equal candidates for its direction.
     let [xx, xy, yy] = *covariance;
@@ -110,9 +108,7 @@ pub(crate) fn function(module: &mut Module) -> FunctionRef {
         cs * (huu - hvv) + (c2 - s2) * huv,
         dot([s2, twice, c2], [huu, huv, hvv]),
     ]);
-    for (name, value) in NAMES.into_iter().zip(measure) {
-        b.result(name, value);
-    }
+    b.results(NAMES, measure);
     b.finish(module)
 }
 

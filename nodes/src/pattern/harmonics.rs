@@ -156,8 +156,8 @@ impl<'a> Spectrum<'a> {
         let table = module.table("waves", self.rows.clone());
         let row = self.row(module, table, of, known);
         let b = &Builder::new("pattern_waves", "A pattern by its waves.");
-        let place = ["x", "y"].map(|name| b.float_param(name));
-        let [xx, xy, yy] = ["xx", "xy", "yy"].map(|name| b.float_param(name));
+        let place = b.float_params(["x", "y"]);
+        let [xx, xy, yy] = b.float_params(["xx", "xy", "yy"]);
         let nodes = b.uint_param("nodes");
         let parameters = declared(b, known);
         let [dx, dy] = [0, 1].map(|i| place[i] + -self.middle[i]);
@@ -212,9 +212,7 @@ impl<'a> Spectrum<'a> {
             let across = sheared([xy, yy], [lean, tall]);
             parts[5] = sheared([parts[4], across], [lean, tall]);
         }
-        for (name, part) in names.iter().zip(parts) {
-            b.result(*name, part);
-        }
+        b.results(names.iter().copied(), parts);
         b.result("serves", serves);
         b.finish(module)
     }
@@ -232,9 +230,9 @@ impl<'a> Spectrum<'a> {
         let b = &Builder::new("pattern_row", "The waves of one more frequency along x.");
         let index = b.uint_param("index");
         let state: Vec<Float<'_>> = names.iter().map(|name| b.float_param(*name)).collect();
-        let place = ["x", "y"].map(|name| b.float_param(name));
-        let covariance = ["xx", "xy", "yy"].map(|name| b.float_param(name));
-        let [inverse, slope, left] = ["inverse", "slope", "left"].map(|name| b.float_param(name));
+        let place = b.float_params(["x", "y"]);
+        let covariance = b.float_params(["xx", "xy", "yy"]);
+        let [inverse, slope, left] = b.float_params(["inverse", "slope", "left"]);
         let parameters = declared(b, known);
         let k = index.to_float();
 
@@ -252,9 +250,7 @@ impl<'a> Spectrum<'a> {
         let live = unknown(&parameters, known);
         let captures = (k, first, place, covariance, factors, live);
         let sums = b.fold(&wave, count.to_int().to_uint(), state, captures);
-        for (name, sum) in names.iter().zip(sums) {
-            b.result(*name, sum);
-        }
+        b.results(names.iter().copied(), sums);
         b.finish(module)
     }
 
@@ -270,9 +266,9 @@ impl<'a> Spectrum<'a> {
         let b = &Builder::new("pattern_wave", "One more wave of a pattern.");
         let index = b.uint_param("index");
         let state: Vec<Float<'_>> = names.iter().map(|name| b.float_param(*name)).collect();
-        let [k, first] = ["k", "first"].map(|name| b.float_param(name));
-        let place = Vec2(["x", "y"].map(|name| b.float_param(name)));
-        let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+        let [k, first] = b.float_params(["k", "first"]);
+        let place = Vec2(b.float_params(["x", "y"]));
+        let covariance = Sym2(b.float_params(["xx", "xy", "yy"]));
         let products = match self.amplitudes {
             Amplitudes::Known => 0,
             Amplitudes::Products(factors) => factors.products(),
@@ -302,9 +298,7 @@ impl<'a> Spectrum<'a> {
         let turned = phase(k, place).map(|part| damping * part);
         let mut parts = derivatives(amplitude, turned, k, of.orders);
         parts.extend(of.squared.then(|| amplitude_of_square * turned[0]));
-        for ((name, sum), part) in names.iter().zip(state).zip(parts) {
-            b.result(*name, sum + part);
-        }
+        b.sums(names.iter().copied(), state, parts);
         b.finish(module)
     }
 }

@@ -107,7 +107,7 @@ fn series(module: &mut Module, name: &str, doc: &str, shape: Shape, sum: Sum) ->
     for name in names {
         b.float_param(format!("last_{name}"));
     }
-    let [distance, sd] = ["distance", "sd"].map(|name| b.float_param(name));
+    let [distance, sd] = b.float_params(["distance", "sd"]);
     let [half, bevel] = [(0, "half"), (1, "bevel")].map(|(i, name)| match shape.known[i] {
         Some(x) => b.float(x),
         None => b.float_param(name),
@@ -121,9 +121,7 @@ fn series(module: &mut Module, name: &str, doc: &str, shape: Shape, sum: Sum) ->
     };
     let Moments { own, square } = sum(&pulse, distance, sd, shape.squared);
     let values = own.into_iter().chain(square.into_iter().flatten());
-    for (name, value) in names.iter().zip(values) {
-        b.result(*name, value);
-    }
+    b.results(names.iter().copied(), values);
     b.finish(module)
 }
 

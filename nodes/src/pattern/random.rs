@@ -138,7 +138,7 @@ fn declared_cells(b: &Builder) -> [Int<'_>; 2] {
 /// The number at a place.
 fn point_function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let b = &Builder::new("brick_number", "The random number of the brick at a place.");
-    let place = ["x", "y"].map(|name| b.float_param(name));
+    let place = b.float_params(["x", "y"]);
     let cells = declared_cells(b);
     let seed = b.uint_param("seed");
     let offset = offset_parameter(b, fixed);

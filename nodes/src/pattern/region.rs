@@ -38,7 +38,7 @@ impl<'b> Whitening<'b> {
     /// The parameters of a function that takes it over.
     pub(crate) fn declare(b: &'b Builder) -> Self {
         Self {
-            inverse: ["inverse_x", "ratio", "inverse_y"].map(|name| b.float_param(name)),
+            inverse: b.float_params(["inverse_x", "ratio", "inverse_y"]),
         }
     }
 
@@ -192,8 +192,7 @@ impl Outline {
 
     /// The parameters of a function that takes a frame.
     pub(crate) fn declare_axes(b: &Builder) -> Axes<'_> {
-        ["o", "a", "b", "e"]
-            .map(|name| [format!("{name}_x"), format!("{name}_y")].map(|name| b.float_param(name)))
+        ["o", "a", "b", "e"].map(|name| b.float_params([format!("{name}_x"), format!("{name}_y")]))
     }
 
     /// The body of a fold over the edges. Captures: the whitening, then o (from the mean), A, B, E.
@@ -202,7 +201,7 @@ impl Outline {
         let table = (!few).then(|| module.table("outline", self.rows()));
         let b = &Builder::new("outline_edge", "One more edge of a polygon.");
         let index = b.uint_param("index");
-        let state = NAMES.map(|name| b.float_param(name));
+        let state = b.float_params(NAMES);
         let whitening = Whitening::declare(b);
         let axes = Self::declare_axes(b);
         let [start, end] = [0, 1].map(|after| {
@@ -212,9 +211,7 @@ impl Outline {
             };
             whitening.apply(vertex(numbers, axes))
         });
-        for ((name, sum), part) in NAMES.into_iter().zip(state).zip(edge(start, end)) {
-            b.result(name, sum + part);
-        }
+        b.sums(NAMES, state, edge(start, end));
         b.finish(module)
     }
 

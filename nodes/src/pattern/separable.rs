@@ -314,7 +314,7 @@ fn tap(module: &mut Module, of: Wanted, cell: &dyn Cell, constants: &[Option<f32
     let sums: Vec<Float<'_>> = (0..of.orders + usize::from(of.squared))
         .map(|i| b.float_param(format!("sum_{i}")))
         .collect();
-    let place = ["x", "y"].map(|name| b.float_param(name));
+    let place = b.float_params(["x", "y"]);
     let nodes = Nodes::declare(b);
     let parameters = declared(b, constants);
     let (axes, weight) = nodes.at(index, place);

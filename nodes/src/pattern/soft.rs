@@ -100,9 +100,7 @@ fn nearest(module: &mut Module, outline: &Outline) -> FunctionRef {
         nearer.select(place[1], near_y),
         meets.select(1.0 - parity, parity),
     ];
-    for (name, value) in names.into_iter().zip(results) {
-        b.result(name, value);
-    }
+    b.results(names, results);
     b.finish(module)
 }
 

@@ -117,8 +117,8 @@ impl<'b> Nodes<'b> {
     /// The parameters of a function that takes it over.
     pub(crate) fn declare(b: &'b Builder) -> Self {
         Self {
-            along: ["along_x", "along_y"].map(|name| b.float_param(name)),
-            sd: ["sd_x", "sd_y"].map(|name| b.float_param(name)),
+            along: b.float_params(["along_x", "along_y"]),
+            sd: b.float_params(["sd_x", "sd_y"]),
             start: b.float_param("start"),
             step: b.float_param("step"),
             correlation: b.float_param("correlation"),

@@ -113,9 +113,9 @@ fn tiling_function(module: &mut Module, tiling: &Tiling<'_>, known: Option<f32>)
     let series = harmonics.function(module);
     let row = row_function(module, lattice, &tiling.figures, known);
     let b = &Builder::new("tiling", "The share of a footprint that lies in figures.");
-    let place = ["x", "y"].map(|name| b.float_param(name));
-    let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
-    let [more, less] = ["more", "less"].map(|name| b.float_param(name));
+    let place = b.float_params(["x", "y"]);
+    let covariance = Sym2(b.float_params(["xx", "xy", "yy"]));
+    let [more, less] = b.float_params(["more", "less"]);
     let size = Size::declare(b, known);
     let single = less.lt(CROSSOVER * CROSSOVER) & more.lt(LONGEST * LONGEST);
 

@@ -232,8 +232,8 @@ impl Wall {
         let touched = b.uint_param("touched");
         let names = names(of);
         let sums: Vec<Float<'_>> = names.iter().map(|name| b.float_param(*name)).collect();
-        let means = ["x", "y"].map(|name| b.float_param(name));
-        let sds = ["sd_x", "sd_y"].map(|name| b.float_param(name));
+        let means = b.float_params(["x", "y"]);
+        let sds = b.float_params(["sd_x", "sd_y"]);
         let correlation = b.float_param("correlation");
         let names_of = ["offset", "joint_x", "ramp_x", "joint_y", "ramp_y"];
         let parameters: Vec<Float<'_>> = (names_of.iter().zip(known))
@@ -258,9 +258,7 @@ impl Wall {
             parts.push(joined(x, y, correlation)[0]);
         }
         b.result("touched", left);
-        for ((name, sum), part) in names.iter().zip(sums).zip(parts) {
-            b.result(*name, sum + part);
-        }
+        b.sums(names.iter().copied(), sums, parts);
         b.finish(module)
     }
 }

@@ -151,7 +151,7 @@ fn gather<'b>(
         let state: Vec<Float<'_>> = (0..numbers)
             .map(|i| b.float_param(format!("state_{i}")))
             .collect();
-        let captures = CAPTURES.map(|name| b.float_param(name));
+        let captures = b.float_params(CAPTURES);
         let pixel = has_nodes.then(|| {
             ["a", "b"].map(|side| {
                 Vec2(["x", "y"].map(|axis| b.float_param(format!("pixel_{side}{axis}"))))

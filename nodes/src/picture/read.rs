@@ -119,7 +119,7 @@ impl Pyramid {
     pub(crate) fn point(&self, lower: &mut Lower<'_, '_>) -> FunctionRef {
         lower.function(&format!("{} point", self.key), |module| {
             let b = &Builder::new("texel", "A picture between its texels.");
-            let place = ["x", "y"].map(|name| b.float_param(name));
+            let place = b.float_params(["x", "y"]);
             self.level(b.uint(0), place, false).results(b);
             b.finish(module)
         })
@@ -135,12 +135,12 @@ impl Pyramid {
     fn build(&self, module: &mut Module, carries: bool) -> FunctionRef {
         let b = &Builder::new("level", "One level of a picture's pyramid of moments.");
         let row = b.uint_param("row");
-        let place = ["x", "y"].map(|name| b.float_param(name));
+        let place = b.float_params(["x", "y"]);
         self.level(row, place, carries).results(b);
         let level = b.finish(module);
 
         let b = &Builder::new("filtered_picture", "A picture under a Gaussian.");
-        let place = ["x", "y"].map(|name| b.float_param(name));
+        let place = b.float_params(["x", "y"]);
         let variance = b.float_param("variance");
         let (row, share, share_of_rest) = self.between(variance);
         let [fine, coarse] = [row, row + 1].map(|row| b.call(&level, (row, place)));

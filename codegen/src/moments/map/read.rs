@@ -31,8 +31,8 @@ pub(super) fn bilinear(
     packing: &Packing,
 ) -> FunctionRef {
     let b = &Builder::new(name, "One level of a map's table, between its texels.");
-    let place = ["u", "v"].map(|name| b.float_param(name));
-    let [intervals, first] = ["intervals", "first"].map(|name| b.float_param(name));
+    let place = b.float_params(["u", "v"]);
+    let [intervals, first] = b.float_params(["intervals", "first"]);
     let [(x, across), (y, down)] = place.map(|coordinate| {
         let at = coordinate * intervals;
         // The last interval includes its end.

@@ -12,7 +12,7 @@ type Build = for<'b> fn([Float<'b>; 2]) -> Float<'b>;
 fn map(module: &mut Module, periodic: bool, build: Build) -> Map {
     let function = move |module: &mut Module| -> FunctionRef {
         let b = &Builder::new("of", "A test.");
-        b.result("value", build(["x", "y"].map(|name| b.float_param(name))));
+        b.result("value", build(b.float_params(["x", "y"])));
         b.finish(module)
     };
     let domain = Domain {
@@ -50,8 +50,8 @@ fn moments(periodic: bool, build: Build, places: &[Place]) -> Vec<[f64; 4]> {
     let mut module = Module::default();
     let map = map(&mut module, periodic, build);
     let b = &Builder::new("moments", "A test.");
-    let mean = ["x", "y"].map(|name| b.float_param(name));
-    let covariance = ["xx", "xy", "yy"].map(|name| b.float_param(name));
+    let mean = b.float_params(["x", "y"]);
+    let covariance = b.float_params(["xx", "xy", "yy"]);
     let moments = map.moments(Vec2(mean), Sym2(covariance));
     let m = &moments[0];
     b.result("result_mean", m.mean);

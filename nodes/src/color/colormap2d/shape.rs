@@ -110,7 +110,7 @@ impl Shape {
     fn nearer(&self, module: &mut Module, table: u32, periodic: bool) -> FunctionRef {
         let b = &Builder::new("nearer", "One more site of a Voronoi diagram.");
         let index = b.uint_param("index");
-        let [least, best, x, y] = ["least", "best", "x", "y"].map(|name| b.float_param(name));
+        let [least, best, x, y] = b.float_params(["least", "best", "x", "y"]);
         let first = index * 2;
         let from = [(x, first), (y, first + 1)].map(|(p, at)| {
             let from = p - b.load(table, at);

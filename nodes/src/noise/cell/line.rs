@@ -111,9 +111,7 @@ impl<'b> Sums<'b> {
 
     /// Gives them as the results of the body of a fold.
     pub(super) fn results(&self, b: &'b Builder) {
-        for (name, part) in Self::names(self.first.len()).zip(self.scalars()) {
-            b.result(name, part);
-        }
+        b.results(Self::names(self.first.len()), self.scalars());
     }
 
     /// The state before the first cell, whose lower edge is at a distance from the mean.
@@ -279,7 +277,7 @@ fn one_more(module: &mut Module, channels: usize, line: &Line<'_, '_>) -> Functi
     let b = &Builder::new("line_cell", "One more cell of a line.");
     let index = b.uint_param("index");
     let sums = Sums::declare(b, channels);
-    let [start, mean, inverse] = ["start", "mean", "inverse_sd"].map(|name| b.float_param(name));
+    let [start, mean, inverse] = b.float_params(["start", "mean", "inverse_sd"]);
     let cell = b.int_param("cell");
     let floats = |name: &str, count: usize| -> Vec<Float<'_>> {
         (0..count)

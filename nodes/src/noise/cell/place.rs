@@ -44,8 +44,8 @@ pub(crate) fn declared<const AXES: usize>(b: &Builder) -> ([Int<'_>; AXES], [Flo
 /// The parameters of a footprint.
 pub(crate) fn declared_spread(b: &Builder) -> Spread<'_> {
     Spread {
-        covariance: Sym2(["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name))),
-        eigenvalues: ["s_major", "s_minor"].map(|name| b.float_param(name)),
+        covariance: Sym2(b.float_params(["s_xx", "s_xy", "s_yy"])),
+        eigenvalues: b.float_params(["s_major", "s_minor"]),
     }
 }
 

@@ -35,7 +35,7 @@ impl Kernel {
 
     /// What kernels share, as parameters.
     fn declared_shape(self, b: &Builder) -> Shape<'_> {
-        let orientation = Vec2(["cosine", "sine"].map(|name| b.float_param(name)));
+        let orientation = Vec2(b.float_params(["cosine", "sine"]));
         let names = [["p_xx", "p_xy", "p_yy"], ["c_xx", "c_xy", "c_yy"]];
         let widened =
             (self.filtered).then(|| names.map(|m| Sym2(m.map(|name| b.float_param(name)))));

@@ -55,7 +55,7 @@ impl<'b> Address<'b> {
             key: b.uint_param("key"),
             steps: ["step_x", "step_y"].map(|name| b.uint_param(name)),
             tile: tiles.then(|| Tile {
-                origin: ["origin_x", "origin_y"].map(|name| b.float_param(name)),
+                origin: b.float_params(["origin_x", "origin_y"]),
                 period: b.float_param("period"),
             }),
         }

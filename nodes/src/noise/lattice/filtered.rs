@@ -43,8 +43,8 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     let sums: Vec<Float<'_>> = names.iter().map(|name| b.float_param(*name)).collect();
     let rest = mode.spreads().then(|| b.float_param("rest"));
     let state = Octave::declare(b, octaves);
-    let covariance = ["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name));
-    let [trace, determinant] = ["trace", "determinant"].map(|name| b.float_param(name));
+    let covariance = b.float_params(["s_xx", "s_xy", "s_yy"]);
+    let [trace, determinant] = b.float_params(["trace", "determinant"]);
 
     // The footprint in cells of this octave. The rows are laid along its longer side.
     let area = state.scale.square().min(1e6);

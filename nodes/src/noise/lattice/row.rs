@@ -61,12 +61,11 @@ impl<'b> Frame<'b> {
             y: b.float_param("y"),
             address: Address::declare(b, tiles),
             shear: b.float_param("shear"),
-            turn: ["turn_even", "turn_lean", "turn_level", "turn_steep"]
-                .map(|name| b.float_param(name)),
-            precisions: ["p", "q"].map(|name| b.float_param(name)),
+            turn: b.float_params(["turn_even", "turn_lean", "turn_level", "turn_steep"]),
+            precisions: b.float_params(["p", "q"]),
             decay: b.float_param("decay"),
             outer_row: b.uint_param("outer_row"),
-            outer: ["outer_x", "outer_y"].map(|name| b.float_param(name)),
+            outer: b.float_params(["outer_x", "outer_y"]),
         }
     }
 

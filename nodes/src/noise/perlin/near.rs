@@ -17,8 +17,8 @@ pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> 
         b.float_param(format!("state_{name}"));
     }
     let grid = Grid::declare(b, tiles);
-    let fractions = ["x", "y"].map(|name| b.float_param(name));
-    let [xx, xy, yy] = ["s_xx", "s_xy", "s_yy"].map(|name| b.float_param(name));
+    let fractions = b.float_params(["x", "y"]);
+    let [xx, xy, yy] = b.float_params(["s_xx", "s_xy", "s_yy"]);
     let powers = [xy, xy.square() * 0.5];
     let axes = [(fractions[0], xx), (fractions[1], yy)]
         .map(|(t, spread)| [quintic(t, false, spread), quintic(1.0 - t, true, spread)]);
@@ -31,8 +31,6 @@ pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> 
             }
         }
     }
-    for (name, total) in NAMES.into_iter().zip(totals) {
-        b.result(name, total);
-    }
+    b.results(NAMES, totals);
     b.finish(module)
 }

@@ -68,7 +68,7 @@ fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionR
     let fit = kind.fit();
     let index = b.uint_param("index");
     let sums = sums(b, mode);
-    let [start, x, dy] = ["start_x", "x", "dy"].map(|name| b.float_param(name));
+    let [start, x, dy] = b.float_params(["start_x", "x", "dy"]);
     let row = b.uint_param("row_word");
     let grid = Grid::declare(b, tiles);
     let shape = declare(b);
@@ -83,9 +83,7 @@ fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionR
         _ => Weight::Number(weights[0]),
     };
     let parts = fit.kernel(weight, (d, means), &shape, derivatives(mode));
-    for ((name, sum), part) in NAMES.into_iter().zip(sums).zip(parts) {
-        b.result(name, sum + envelope * part);
-    }
+    b.sums(NAMES, sums, parts.into_iter().map(|part| envelope * part));
     b.finish(module)
 }
 
@@ -99,10 +97,9 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let b = &Builder::new(format!("{}_row", kind.name()), doc);
     let index = b.uint_param("index");
     let sums = sums(b, mode);
-    let [first, rows, columns, shear] =
-        ["start_y", "rows", "columns", "shear"].map(|name| b.float_param(name));
+    let [first, rows, columns, shear] = b.float_params(["start_y", "rows", "columns", "shear"]);
     let grid = Grid::declare(b, tiles);
-    let [x, y] = ["x", "y"].map(|name| b.float_param(name));
+    let [x, y] = b.float_params(["x", "y"]);
     let shape = declare(b);
     let place = first + index.to_float();
     let dy = y - place;
@@ -114,11 +111,6 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let (columns, turns) = count(columns * left, COUNTS);
     let start = start(centre, columns);
     let captures = ([start, x, dy], word, grid, captures(&shape));
-    for (name, sum) in NAMES
-        .into_iter()
-        .zip(b.fold(&kernel, turns, sums, captures))
-    {
-        b.result(name, sum);
-    }
+    b.results(NAMES, b.fold(&kernel, turns, sums, captures));
     b.finish(module)
 }

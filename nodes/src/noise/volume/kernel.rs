@@ -14,9 +14,7 @@ fn sums(b: &Builder, parts: usize) -> Vec<Float<'_>> {
 }
 
 fn results<'b>(b: &'b Builder, sums: Vec<Float<'b>>) {
-    for (name, sum) in NAMES.into_iter().zip(sums) {
-        b.result(name, sum);
-    }
+    b.results(NAMES, sums);
 }
 
 /// The filtered kernel of one lattice point, the body of a fold over columns. Gradients and
@@ -26,7 +24,7 @@ fn kernel(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> Functio
     let b = &Builder::new("volume_kernel", doc);
     let index = b.uint_param("index");
     let sums = sums(b, parts);
-    let [first, dy, dz] = ["x", "dy", "dz"].map(|name| b.float_param(name));
+    let [first, dy, dz] = b.float_params(["x", "dy", "dz"]);
     let points = Points::declare(b, tiles);
     let shape = Shape::declare(b);
     let number = index.to_float();
@@ -74,10 +72,10 @@ fn row(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> FunctionRe
     let b = &Builder::new("volume_row", doc);
     let index = b.uint_param("index");
     let sums = sums(b, parts);
-    let [rows, columns] = ["rows", "columns"].map(|name| b.float_param(name));
-    let leans = ["lean_y", "lean_z"].map(|name| b.float_param(name));
-    let [x, first, dz] = ["x", "y", "dz"].map(|name| b.float_param(name));
-    let [middle, left] = ["middle", "left"].map(|name| b.float_param(name));
+    let [rows, columns] = b.float_params(["rows", "columns"]);
+    let leans = b.float_params(["lean_y", "lean_z"]);
+    let [x, first, dz] = b.float_params(["x", "y", "dz"]);
+    let [middle, left] = b.float_params(["middle", "left"]);
     let points = Points::declare(b, tiles);
     let shape = Shape::declare(b);
     let number = index.to_float();
@@ -102,9 +100,9 @@ pub(super) fn slice(module: &mut Module, kind: Kind, parts: usize, tiles: bool) 
     let b = &Builder::new("volume_slice", doc);
     let index = b.uint_param("index");
     let sums = sums(b, parts);
-    let [slices, rows, columns] = ["slices", "rows", "columns"].map(|name| b.float_param(name));
-    let [shear, lean_y, lean_z] = ["shear", "lean_y", "lean_z"].map(|name| b.float_param(name));
-    let [x, y, first] = ["x", "y", "z"].map(|name| b.float_param(name));
+    let [slices, rows, columns] = b.float_params(["slices", "rows", "columns"]);
+    let [shear, lean_y, lean_z] = b.float_params(["shear", "lean_y", "lean_z"]);
+    let [x, y, first] = b.float_params(["x", "y", "z"]);
     let points = Points::declare(b, tiles);
     let shape = Shape::declare(b);
     let number = index.to_float();

@@ -86,7 +86,7 @@ fn row(module: &mut Module, tiles: bool) -> FunctionRef {
     let index = b.uint_param("index");
     let sum = b.float_param("sum");
     let columns = [0, 1, 2].map(|i| ["d", "e"].map(|name| b.float_param(format!("{name}_{i}"))));
-    let [first, dz, outer] = ["y", "dz", "envelope"].map(|name| b.float_param(name));
+    let [first, dz, outer] = b.float_params(["y", "dz", "envelope"]);
     let points = Points::declare(b, tiles);
     let number = index.to_float();
     let points = points.stepped(1, number);
@@ -110,7 +110,7 @@ fn slice(module: &mut Module, tiles: bool) -> FunctionRef {
     let index = b.uint_param("index");
     let sum = b.float_param("sum");
     let columns = [0, 1, 2, 3, 4, 5].map(|i| b.float_param(format!("column_{i}")));
-    let [y, first] = ["y", "z"].map(|name| b.float_param(name));
+    let [y, first] = b.float_params(["y", "z"]);
     let points = Points::declare(b, tiles);
     let number = index.to_float();
     let points = points.stepped(2, number);

@@ -129,7 +129,7 @@ pub(super) fn corner(module: &mut Module, parts: usize, tiles: bool) -> Function
         .map(|name| b.float_param(format!("sum_{name}")))
         .collect();
     let mut point = Points::declare(b, tiles);
-    let fractions = ["x", "y", "z"].map(|name| b.float_param(name));
+    let fractions = b.float_params(["x", "y", "z"]);
     let covariance = Symmetric(PAIRS.map(|[i, j]| b.float_param(format!("c_{i}{j}"))));
     let [(x, along_x), (y, along_y), (z, along_z)] = [0, 1, 2].map(|axis| {
         let end = ((index >> axis as u32) & 1).to_float();
@@ -163,8 +163,6 @@ pub(super) fn corner(module: &mut Module, parts: usize, tiles: bool) -> Function
             all.push(own + dot(turned, thirds));
         }
     }
-    for ((name, sum), part) in NAMES.into_iter().zip(sums).zip(all) {
-        b.result(name, sum + part);
-    }
+    b.sums(NAMES, sums, all);
     b.finish(module)
 }

@@ -45,9 +45,8 @@ const LINE: [&str; 7] = [
 fn column(module: &mut Module) -> FunctionRef {
     let b = &Builder::new("brick_column", "One more brick of a row.");
     let index = b.uint_param("index");
-    let state = LINE.map(|name| b.float_param(name));
-    let [from, half, start, inverse] =
-        ["from", "half", "start", "inverse"].map(|name| b.float_param(name));
+    let state = b.float_params(LINE);
+    let [from, half, start, inverse] = b.float_params(["from", "half", "start", "inverse"]);
     let cell = b.int_param("cell_x");
     let row = b.uint_param("row");
     let copy = start + index.to_float();
@@ -64,9 +63,7 @@ fn column(module: &mut Module) -> FunctionRef {
         steep * number,
         w,
     ];
-    for ((name, sum), part) in LINE.into_iter().zip(state).zip(parts) {
-        b.result(name, sum + part);
-    }
+    b.sums(LINE, state, parts);
     b.finish(module)
 }
 
@@ -75,12 +72,12 @@ fn row(module: &mut Module) -> FunctionRef {
     let column = column(module);
     let b = &Builder::new("brick_row", "One more row of bricks.");
     let index = b.uint_param("index");
-    let state = SUMS.map(|name| b.float_param(name));
-    let [from_x, from_y] = ["from_x", "from_y"].map(|name| b.float_param(name));
-    let [half_x, half_y] = ["half_x", "half_y"].map(|name| b.float_param(name));
-    let [start_x, start_y] = ["start_x", "start_y"].map(|name| b.float_param(name));
+    let state = b.float_params(SUMS);
+    let [from_x, from_y] = b.float_params(["from_x", "from_y"]);
+    let [half_x, half_y] = b.float_params(["half_x", "half_y"]);
+    let [start_x, start_y] = b.float_params(["start_x", "start_y"]);
     let count = b.float_param("count");
-    let [inverse_x, inverse_y] = ["inverse_x", "inverse_y"].map(|name| b.float_param(name));
+    let [inverse_x, inverse_y] = b.float_params(["inverse_x", "inverse_y"]);
     let correlation = b.float_param("correlation");
     let cells = declared_cells(b);
     let [which, seed] = ["which", "seed"].map(|name| b.uint_param(name));
@@ -95,9 +92,7 @@ fn row(module: &mut Module) -> FunctionRef {
     let mut parts = joined([x0, x1, x2, x3], y, correlation).to_vec();
     parts.push(square * y[0] + square_slope * (correlation * y[1]));
     parts.push(y[0] * weight);
-    for ((name, sum), part) in SUMS.into_iter().zip(state).zip(parts) {
-        b.result(name, sum + part);
-    }
+    b.sums(SUMS, state, parts);
     b.finish(module)
 }
 
@@ -109,7 +104,7 @@ pub(super) fn tap(module: &mut Module, bond: Bond, fixed: Option<f32>) -> Functi
     let index = b.uint_param("index");
     let total = b.float_param("weights");
     let state = SUMS.map(|name| b.float_param(format!("sum_{name}")));
-    let place = ["x", "y"].map(|name| b.float_param(name));
+    let place = b.float_params(["x", "y"]);
     let nodes = Nodes::declare(b);
     let kept = b.float_param("kept");
     let cells = declared_cells(b);
@@ -151,9 +146,9 @@ fn brick(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let b = &Builder::new("brick_copies", "The copies of one more brick within reach.");
     b.uint_param("index");
     let touched = b.uint_param("touched");
-    let state = SUMS.map(|name| b.float_param(name));
-    let means = ["x", "y"].map(|name| b.float_param(name));
-    let sds = ["sd_x", "sd_y"].map(|name| b.float_param(name));
+    let state = b.float_params(SUMS);
+    let means = b.float_params(["x", "y"]);
+    let sds = b.float_params(["sd_x", "sd_y"]);
     let correlation = b.float_param("correlation");
     let cells = declared_cells(b);
     let seed = b.uint_param("seed");
@@ -176,8 +171,6 @@ fn brick(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let captures = (place, cells, which * BRICK, seed);
     let sums = b.fold(&row, count_y.to_int().to_uint(), state, captures);
     b.result("touched", left);
-    for (name, sum) in SUMS.into_iter().zip(sums) {
-        b.result(name, sum);
-    }
+    b.results(SUMS, sums);
     b.finish(module)
 }

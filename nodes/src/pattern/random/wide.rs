@@ -65,9 +65,9 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
     let tile = tile(module, bond, fixed);
     let count = tiles(bond).len() as u32;
     let b = &Builder::new("brick_tiles", "Random bricks under a long footprint.");
-    let place = ["x", "y"].map(|name| b.float_param(name));
-    let [xx, xy, yy] = ["xx", "xy", "yy"].map(|name| b.float_param(name));
-    let parts = ["parts_x", "parts_y"].map(|name| b.float_param(name));
+    let place = b.float_params(["x", "y"]);
+    let [xx, xy, yy] = b.float_params(["xx", "xy", "yy"]);
+    let parts = b.float_params(["parts_x", "parts_y"]);
     let cells = declared_cells(b);
     let seed = b.uint_param("seed");
     let kept = b.float_param("kept");
@@ -89,9 +89,7 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
     let none = [b.float(0.0); SUMS.len()];
     let sums = b.fold(&tile, count, none, (shape, cells, seed, live));
     let share = kept / sums[7].max(1e-20);
-    for (name, sum) in SUMS.into_iter().zip(sums) {
-        b.result(name, sum * share);
-    }
+    b.results(SUMS, sums.map(|sum| sum * share));
     b.finish(module)
 }
 
@@ -123,12 +121,12 @@ fn tile(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let table = module.table("tiles", tiles.concat());
     let b = &Builder::new("tile_parts", "The parts of one more tile.");
     let index = b.uint_param("index");
-    let state = SUMS.map(|name| b.float_param(name));
-    let place = ["x", "y"].map(|name| b.float_param(name));
-    let parts = ["parts_x", "parts_y"].map(|name| b.float_param(name));
-    let halves = ["half_x", "half_y"].map(|name| b.float_param(name));
-    let [sd_x, sd_y, slope] = ["sd_x", "sd_y", "slope"].map(|name| b.float_param(name));
-    let inverse = ["inverse_x", "inverse_y"].map(|name| b.float_param(name));
+    let state = b.float_params(SUMS);
+    let place = b.float_params(["x", "y"]);
+    let parts = b.float_params(["parts_x", "parts_y"]);
+    let halves = b.float_params(["half_x", "half_y"]);
+    let [sd_x, sd_y, slope] = b.float_params(["sd_x", "sd_y", "slope"]);
+    let inverse = b.float_params(["inverse_x", "inverse_y"]);
     let cells = declared_cells(b);
     let seed = b.uint_param("seed");
     let offset = offset_parameter(b, fixed);
@@ -145,9 +143,7 @@ fn tile(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let grid = (from, parts[0], 1.0 / parts[0], halves);
     let captures = (grid, [sd_x, sd_y, slope], inverse, cells, which, seed);
     let sums = b.fold(&part, count, state, captures);
-    for (name, sum) in SUMS.into_iter().zip(sums) {
-        b.result(name, sum);
-    }
+    b.results(SUMS, sums);
     b.finish(module)
 }
 
@@ -156,12 +152,12 @@ fn part(module: &mut Module) -> FunctionRef {
     let row = row(module);
     let b = &Builder::new("part_copies", "The copies of one more part of a tile.");
     let index = b.uint_param("index");
-    let state = SUMS.map(|name| b.float_param(name));
-    let corner = ["corner_x", "corner_y"].map(|name| b.float_param(name));
-    let [parts, inverse_parts] = ["parts_x", "inverse_parts"].map(|name| b.float_param(name));
-    let halves = ["half_x", "half_y"].map(|name| b.float_param(name));
-    let [sd_x, sd_y, slope] = ["sd_x", "sd_y", "slope"].map(|name| b.float_param(name));
-    let inverse = ["inverse_x", "inverse_y"].map(|name| b.float_param(name));
+    let state = b.float_params(SUMS);
+    let corner = b.float_params(["corner_x", "corner_y"]);
+    let [parts, inverse_parts] = b.float_params(["parts_x", "inverse_parts"]);
+    let halves = b.float_params(["half_x", "half_y"]);
+    let [sd_x, sd_y, slope] = b.float_params(["sd_x", "sd_y", "slope"]);
+    let inverse = b.float_params(["inverse_x", "inverse_y"]);
     let cells = declared_cells(b);
     let [which, seed] = ["which", "seed"].map(|name| b.uint_param(name));
     // Half a part added before the division keeps whole quotients whole.
@@ -172,9 +168,7 @@ fn part(module: &mut Module) -> FunctionRef {
     let [start, rows] = within(from[1], sd_y * REACH);
     let captures = (from, [start, sd_x, slope], inverse, cells, which, seed);
     let sums = b.fold(&row, rows.to_int().to_uint(), state, captures);
-    for (name, sum) in SUMS.into_iter().zip(sums) {
-        b.result(name, sum);
-    }
+    b.results(SUMS, sums);
     b.finish(module)
 }
 
@@ -183,10 +177,10 @@ fn row(module: &mut Module) -> FunctionRef {
     let copy = copy(module);
     let b = &Builder::new("tile_row", "One more row of copies.");
     let index = b.uint_param("index");
-    let state = SUMS.map(|name| b.float_param(name));
-    let from = ["from_x", "from_y"].map(|name| b.float_param(name));
-    let [start, sd_x, slope] = ["start", "sd_x", "slope"].map(|name| b.float_param(name));
-    let inverse = ["inverse_x", "inverse_y"].map(|name| b.float_param(name));
+    let state = b.float_params(SUMS);
+    let from = b.float_params(["from_x", "from_y"]);
+    let [start, sd_x, slope] = b.float_params(["start", "sd_x", "slope"]);
+    let inverse = b.float_params(["inverse_x", "inverse_y"]);
     let cells = declared_cells(b);
     let [which, seed] = ["which", "seed"].map(|name| b.uint_param(name));
     let at = start + index.to_float();
@@ -201,9 +195,7 @@ fn row(module: &mut Module) -> FunctionRef {
     let line = [middle, first, used, scaled, slope];
     let captures = (line, inverse, cells[0], hash);
     let sums = b.fold(&copy, count.to_int().to_uint(), state, captures);
-    for (name, sum) in SUMS.into_iter().zip(sums) {
-        b.result(name, sum);
-    }
+    b.results(SUMS, sums);
     b.finish(module)
 }
 
@@ -211,10 +203,10 @@ fn row(module: &mut Module) -> FunctionRef {
 fn copy(module: &mut Module) -> FunctionRef {
     let b = &Builder::new("tile_copy", "One more copy of a tile.");
     let index = b.uint_param("index");
-    let state = SUMS.map(|name| b.float_param(name));
-    let [middle, first, used] = ["middle", "first", "used"].map(|name| b.float_param(name));
-    let [scaled, slope] = ["scaled", "slope"].map(|name| b.float_param(name));
-    let inverse = ["inverse_x", "inverse_y"].map(|name| b.float_param(name));
+    let state = b.float_params(SUMS);
+    let [middle, first, used] = b.float_params(["middle", "first", "used"]);
+    let [scaled, slope] = b.float_params(["scaled", "slope"]);
+    let inverse = b.float_params(["inverse_x", "inverse_y"]);
     let cell = b.int_param("cell_x");
     let hash = b.uint_param("row");
     let at = first + index.to_float();
@@ -241,8 +233,6 @@ fn copy(module: &mut Module) -> FunctionRef {
         value * number,
         weight,
     ];
-    for ((name, sum), part) in SUMS.into_iter().zip(state).zip(parts) {
-        b.result(name, sum + part);
-    }
+    b.sums(SUMS, state, parts);
     b.finish(module)
 }

@@ -85,11 +85,11 @@ pub(super) fn row_function(
         .collect();
     let b = &Builder::new("tiling_row", "One more row of a tiling.");
     let index = b.uint_param("index");
-    let mut sums = NAMES.map(|name| b.float_param(name));
-    let [x, y] = ["x", "y"].map(|name| b.float_param(name));
-    let [first, slope, sd] = ["first", "slope", "sd"].map(|name| b.float_param(name));
+    let mut sums = b.float_params(NAMES);
+    let [x, y] = b.float_params(["x", "y"]);
+    let [first, slope, sd] = b.float_params(["first", "slope", "sd"]);
     let whitening = Whitening::declare(b);
-    let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+    let covariance = Sym2(b.float_params(["xx", "xy", "yy"]));
     let size = Size::declare(b, known);
     let row = first + index.to_float();
     let up = row * lattice.row() as f32 + lattice.origin() as f32 - y;
@@ -109,9 +109,7 @@ pub(super) fn row_function(
         let parts = b.fold(function, count, [b.float(0.0); 6], captures);
         sums = std::array::from_fn(|i| sums[i] + parts[i]);
     }
-    for (name, sum) in NAMES.into_iter().zip(sums) {
-        b.result(name, sum);
-    }
+    b.results(NAMES, sums);
     b.finish(module)
 }
 
@@ -145,10 +143,10 @@ fn figure_function(module: &mut Module, shape: &Shape, known: Option<f32>) -> Fu
     };
     let b = &Builder::new("tiling_figure", "One more figure of a row.");
     let index = b.uint_param("index");
-    let state = NAMES.map(|name| b.float_param(name));
-    let [start, from, up] = ["start", "from", "up"].map(|name| b.float_param(name));
+    let state = b.float_params(NAMES);
+    let [start, from, up] = b.float_params(["start", "from", "up"]);
     let whitening = Whitening::declare(b);
-    let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+    let covariance = Sym2(b.float_params(["xx", "xy", "yy"]));
     let size = Size::declare(b, known);
     let across = start + index.to_float() - from;
     let measure: Measure<'_> = match shape {
@@ -166,8 +164,6 @@ fn figure_function(module: &mut Module, shape: &Shape, known: Option<f32>) -> Fu
             results.try_into().expect("a measure")
         }
     };
-    for ((name, sum), part) in NAMES.into_iter().zip(state).zip(measure) {
-        b.result(name, sum + part);
-    }
+    b.sums(NAMES, state, measure);
     b.finish(module)
 }

@@ -80,9 +80,9 @@ impl Harmonics {
         let table = module.table("harmonics", numbers);
         let b = &Builder::new("tiling_harmonic", "One more harmonic of a tiling.");
         let index = b.uint_param("index");
-        let state = NAMES.map(|name| b.float_param(name));
-        let place = Vec2(["x", "y"].map(|name| b.float_param(name)));
-        let covariance = Sym2(["xx", "xy", "yy"].map(|name| b.float_param(name)));
+        let state = b.float_params(NAMES);
+        let place = Vec2(b.float_params(["x", "y"]));
+        let covariance = Sym2(b.float_params(["xx", "xy", "yy"]));
         let size = matches!(self.rows, Rows::OfSize(_)).then(|| b.float_param("size"));
         let first = index * width;
         let [k, l, amplitude] = [0u32, 1, 2].map(|i| b.load(table, first + i));
@@ -96,9 +96,7 @@ impl Harmonics {
         let k = Vec2([k, l]);
         let (_, left) = damping(k, covariance);
         let parts = derivatives(amplitude * left, phase(k, place), k, NAMES.len());
-        for ((name, sum), part) in NAMES.into_iter().zip(state).zip(parts) {
-            b.result(name, sum + part);
-        }
+        b.sums(NAMES, state, parts);
         b.finish(module)
     }
 }
