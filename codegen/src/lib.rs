@@ -15,6 +15,6 @@ pub mod target;
 pub mod wgsl;
 
 pub use lower::{
-    Bundle, Lower, Method, NodeDef, NodeRule, Options, Over, ParseMethodError, PartNames,
-    PixelFilter, Upstream, Widened, compile,
+    Audit, AuditedBand, AuditedOutput, Bundle, Lower, Method, NodeDef, NodeRule, Options, Over,
+    ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Upstream, Widened, audit, compile,
 };

@@ -6,6 +6,7 @@
 
 mod ahead;
 mod arguments;
+mod audit;
 mod entry;
 mod finish;
 mod function;
@@ -15,15 +16,19 @@ mod map;
 mod method;
 mod order;
 mod pair;
+mod period;
 mod place;
 mod rule;
+mod sampled;
 mod sampling;
 mod shape;
 mod symbols;
 mod table;
 mod taps;
+mod torus;
 mod upstream;
 
+pub use audit::{Audit, AuditedBand, AuditedOutput, Remedy, Replaced};
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
 pub use upstream::{Over, Upstream, Widened};
@@ -79,6 +84,27 @@ impl Default for Options {
 /// If `catalogue` is not the one that the graph was resolved with.
 pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> Program {
     let graph = checked.graph();
+    let facts = Facts::of(graph);
+    match options.method {
+        Method::Auto => audit::audited(checked, catalogue, options, facts).0,
+        _ => program(graph, catalogue, options, &facts),
+    }
+}
+
+/// What `auto` does for a checked graph, and how far it and its closed form are from the truth.
+///
+/// # Panics
+/// If `catalogue` is not the one that the graph was resolved with.
+pub fn audit(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> Audit {
+    let options = Options {
+        method: Method::Auto,
+        ..*options
+    };
+    audit::audited(checked, catalogue, &options, Facts::of(checked.graph())).1
+}
+
+/// The program of a graph of which this is known.
+fn program(graph: &Graph, catalogue: &[NodeDef], options: &Options, facts: &Facts) -> Program {
     let interface = Interface {
         name: identifier(&graph.name),
         parameters: (graph.parameters.iter())
@@ -98,8 +124,7 @@ pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> P
         moments: options.moments,
         position: symbols::reads_position(graph),
     };
-    let facts = Facts::of(graph);
-    let compiler = Compiler::new((graph, &facts), catalogue, options);
+    let compiler = Compiler::new((graph, facts), catalogue, options);
     let mut module = Module::default();
     entry::build(&compiler, &mut module, &interface.name);
     compiler.library.link(&mut module);
@@ -169,6 +194,10 @@ struct Facts {
     crossed: Vec<bool>,
     /// Whether literals alone shape each node's output.
     literal: Vec<bool>,
+    /// The nodes that `auto` samples.
+    sampled: FxHashMap<usize, sampled::Sampling>,
+    /// The nodes that repeat, which `auto` reads from maps.
+    repeated: FxHashMap<usize, torus::Repeated>,
 }
 
 impl Facts {
@@ -178,6 +207,8 @@ impl Facts {
             order: order::order(graph, &live),
             crossed: symbols::crossed(graph),
             literal: symbols::literal(graph),
+            sampled: FxHashMap::default(),
+            repeated: FxHashMap::default(),
             live,
         }
     }
@@ -382,6 +413,12 @@ impl<'g, 'b> Lower<'g, 'b> {
             if let Some(fused) = self.fuse(index, node, &bundle) {
                 bundle = fused;
             }
+            if let Some(other) = self.instead(index, &bundle) {
+                bundle = other;
+                self.chains[index] = None;
+                self.pairs[index] = None;
+                self.sums[index] = None;
+            }
             self.carriers.born(&bundle);
             // Inputs that nothing else reads are gone: a symbol that only this signal still carries
             // is nobody's business.
@@ -409,6 +446,18 @@ impl<'g, 'b> Lower<'g, 'b> {
                 }
             }
             self.bundles[index] = Some(bundle);
+        }
+    }
+
+    /// What takes the place of a closed form that the audit found to be wrong.
+    fn instead(&mut self, index: usize, closed: &[Signal<'b>]) -> Option<Bundle<'b>> {
+        let repeated = self.repeated(index, closed);
+        match self.sampling(index) {
+            Some(sampling) => {
+                let closed = repeated.unwrap_or_else(|| closed.to_vec());
+                Some(self.sampled(index, &closed, sampling))
+            }
+            None => repeated,
         }
     }
 

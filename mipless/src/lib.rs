@@ -129,7 +129,10 @@ pub use files::{
 };
 pub use mipless_codegen::cpu::Footprint;
 pub use mipless_codegen::ir::Program;
-pub use mipless_codegen::{Method, NodeDef, Options, PixelFilter, target, wgsl};
+pub use mipless_codegen::{
+    Audit, AuditedBand, AuditedOutput, Method, NodeDef, Options, PixelFilter, Remedy, Replaced,
+    target, wgsl,
+};
 pub use mipless_graph::{
     Binding, Body, CheckOptions, Checked, Diagnostic, Document, InputEntry, Literal, Map,
     NodeEntry, NodeSpec, Output, Parameter, PortSpec, PortType, Reference, Severity, Signal, Type,

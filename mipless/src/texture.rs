@@ -1,7 +1,7 @@
 //! A checked graph with its catalogue.
 
 use crate::files::{Files, Folder, NoFiles, name_of_file};
-use crate::{Options, Program, TextureEvaluator, resource};
+use crate::{Audit, Options, Program, TextureEvaluator, resource};
 use std::fmt;
 use std::io;
 use std::path::Path;
@@ -185,6 +185,12 @@ impl Texture {
     /// Compiles the graph for both back ends.
     pub fn compile(&self, options: &Options) -> Program {
         mipless_codegen::compile(&self.checked, crate::catalogue(), options)
+    }
+
+    /// What `auto` does where closed forms are wrong, and how far it is off: measured on the CPU at a
+    /// few places, once for each graph, by [`Texture::compile`] too.
+    pub fn audit(&self, options: &Options) -> Audit {
+        mipless_codegen::audit(&self.checked, crate::catalogue(), options)
     }
 
     /// Compiles the graph for evaluation on the CPU, with its inputs at their defaults.

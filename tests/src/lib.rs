@@ -9,6 +9,7 @@
 //! | `stability` | no footprint, however extreme, gives anything but a finite number in range |
 //! | `properties` | random graphs, nodes with any input set, and mutilated documents |
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
+//! | `field` | graphs as strangers write them are filtered, and nowhere worse than a point |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `tidy` | the order of the house: arrows, generated files, names |
 //! | `book` | the pages of the nodes and their pictures |

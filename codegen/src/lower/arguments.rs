@@ -35,6 +35,15 @@ impl<'b> Arguments<'b> {
         }
     }
 
+    /// Of a function that reads where a point is, but no input of the graph.
+    pub(super) fn of_place(footprint: Place<'b, 2>) -> Self {
+        Self {
+            footprint,
+            position: None,
+            parameters: Vec::new(),
+        }
+    }
+
     /// The inputs of the graph as parameters of a function.
     pub(super) fn parameters(b: &'b Builder, graph: &Graph) -> Vec<Scalar<'b>> {
         let mut parameters = Vec::new();

@@ -43,6 +43,16 @@ impl<'b, const AXES: usize> Place<'b, AXES> {
         }
     }
 
+    /// A point without a footprint.
+    pub(super) fn at_point(b: &'b Builder, at: [Float<'b>; AXES]) -> Self {
+        let whole = at.map(Float::floor);
+        Self {
+            cell: whole.map(Float::to_int),
+            fraction: array::from_fn(|axis| at[axis] - whole[axis]),
+            ..Self::origin(b)
+        }
+    }
+
     /// Each change through `f`.
     pub(super) fn with_changes(self, f: impl Fn(Float<'b>) -> Float<'b>) -> Self {
         Self {

@@ -244,7 +244,7 @@ impl<'b> Signal<'b> {
     }
 
     /// `other` where the condition holds, else this.
-    pub(super) fn select(&self, condition: Bool<'b>, other: &Self) -> Self {
+    pub(crate) fn select(&self, condition: Bool<'b>, other: &Self) -> Self {
         let (x, y) = (self.flat(), other.flat());
         let pick = |c: Float<'b>, d: Float<'b>| condition.select(d, c);
         let shared = symbols_of(&[&x, &y]).into_iter().map(|symbol| {

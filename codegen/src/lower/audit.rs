@@ -1,0 +1,323 @@
+//! The compiler audits itself: what it has made of a graph is compared with the truth on a few
+//! footprints, and what is worse than no filter is sampled.
+//!
+//! The closed forms are exact for what they are made for; a stranger's graph may be something else.
+//! So the program is evaluated on the CPU for [`BANDS`] sizes of pixels at a few places, and held
+//! against means of many points. Where an output is further off than a point, or by more than
+//! a tolerance, ways are tried one after the other:
+//!
+//! 1. the closed form as it is;
+//! 2. what depends on position alone and repeats by maps ([`super::torus`]);
+//! 3. the nodes at which the error begins by points ([`super::sampled`]), what follows them closed;
+//! 4. the outputs themselves by points.
+//!
+//! Each node is sampled in the bands alone where that is better. The result depends on the graph
+//! alone, and is remembered by its shape ([`super::shape`]): an edit that changes nothing that
+//! matters costs nothing.
+
+mod suspects;
+mod truth;
+mod verdict;
+
+use super::sampled::{BANDS, Sampling, size_of};
+use super::shape::{Shape, shape};
+use super::torus::Repeated;
+use super::{Compiler, Facts, NodeDef, Options, program};
+use crate::ir::Program;
+use mipless_graph::{Checked, Class, Graph, NodeId};
+use rustc_hash::FxHashMap;
+use std::sync::{Arc, LazyLock, PoisonError, RwLock};
+use suspects::{beginnings, ends, repeated, steady};
+use truth::{Errors, GLANCE, LOOK, Truth, values};
+use verdict::{Verdict, where_better};
+
+/// The most graphs that a process remembers.
+const MOST: usize = 1024;
+
+/// All bands.
+const EVERYWHERE: [usize; 2] = [0, BANDS - 1];
+
+/// What an audit has found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Audit {
+    /// The outputs, with their errors; none where every rule is exact.
+    pub outputs: Vec<AuditedOutput>,
+    /// The nodes that `auto` does not close, in the order of the graph.
+    pub replaced: Vec<Replaced>,
+}
+
+/// What `auto` does in place of a closed form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Remedy {
+    /// The node is averaged over points inside the footprint.
+    Sampled,
+    /// The node depends on position alone and repeats: it is read from a map of its period.
+    Repeated,
+}
+
+/// A node that `auto` does not close.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Replaced {
+    /// The node.
+    pub node: NodeId,
+    /// What takes the place of its closed form.
+    pub remedy: Remedy,
+    /// From which to which size of pixel, in uv; 0 and infinity where it is any.
+    pub sizes: [f32; 2],
+}
+
+/// The errors of an output, by bands of footprints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AuditedOutput {
+    /// Its place among the graph's outputs.
+    pub output: usize,
+    /// Its errors, from the smallest footprints to the largest.
+    pub bands: Vec<AuditedBand>,
+}
+
+impl AuditedOutput {
+    /// The largest error of `auto` that is to be expected, as a display shows it: a third more than
+    /// was measured at a few places, and the noise of what was held to be true.
+    pub fn predicted(&self) -> f64 {
+        let largest = self.bands.iter().map(|band| band.auto).fold(0.0, f64::max);
+        1.33 * largest + 0.005
+    }
+}
+
+/// Root mean square errors over a few places with footprints of one size, as a display shows them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AuditedBand {
+    /// The shorter axis of the footprint, in uv a pixel.
+    pub size: f32,
+    /// Of a point.
+    pub point: f64,
+    /// Of the closed form.
+    pub closed: f64,
+    /// Of what `auto` does.
+    pub auto: f64,
+}
+
+/// What is decided for a graph.
+#[derive(Debug, Default)]
+struct Decision {
+    sampled: FxHashMap<usize, Sampling>,
+    repeated: FxHashMap<usize, Repeated>,
+    audit: Audit,
+}
+
+/// What this process has decided, by the shapes of graphs.
+static KNOWN: LazyLock<RwLock<FxHashMap<Shape, Arc<Decision>>>> = LazyLock::new(RwLock::default);
+
+/// The program of `auto`, with what its audit has found.
+pub(super) fn audited(
+    checked: &Checked,
+    catalogue: &[NodeDef],
+    options: &Options,
+    mut facts: Facts,
+) -> (Program, Audit) {
+    let graph = checked.graph();
+    if is_exact(checked) {
+        return (program(graph, catalogue, options, &facts), Audit::default());
+    }
+    let shape = shape_of(graph, catalogue, options, &facts);
+    let known = shape.as_ref().and_then(|shape| {
+        let known = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
+        known.get(shape).cloned()
+    });
+    if let Some(known) = known {
+        facts.sampled = known.sampled.clone();
+        facts.repeated = known.repeated.clone();
+        return (
+            program(graph, catalogue, options, &facts),
+            known.audit.clone(),
+        );
+    }
+    let (program, decision) = decide(checked, catalogue, options, &mut facts);
+    let audit = decision.audit.clone();
+    if let Some(shape) = shape {
+        let mut known = KNOWN.write().unwrap_or_else(PoisonError::into_inner);
+        if known.len() < MOST {
+            known.insert(shape, Arc::new(decision));
+        }
+    }
+    (program, audit)
+}
+
+/// Whether every output is Gaussian or a constant, of which all rules are exact.
+fn is_exact(checked: &Checked) -> bool {
+    let exact = |class| matches!(class, Class::Constant | Class::Gaussian { .. });
+    let mut outputs = checked.graph().outputs.iter();
+    outputs.all(|output| exact(checked.signal(output.node).class))
+}
+
+/// All that the decision depends on.
+fn shape_of(
+    graph: &Graph,
+    catalogue: &[NodeDef],
+    options: &Options,
+    facts: &Facts,
+) -> Option<Shape> {
+    let compiler = Compiler::new((graph, facts), catalogue, options);
+    let all: Vec<usize> = (0..graph.nodes.len()).collect();
+    let mut words = shape(&compiler, &[], &all)?;
+    words.extend(graph.outputs.iter().map(|output| output.node.0));
+    words.push(options.filter.sd().to_bits());
+    Some(words)
+}
+
+/// A program with its errors and with what it is made of.
+struct Candidate {
+    program: Program,
+    errors: Errors,
+    sampled: FxHashMap<usize, Sampling>,
+    repeated: FxHashMap<usize, Repeated>,
+}
+
+/// Compiles the graph, and decides what of it is sampled or read from maps.
+fn decide(
+    checked: &Checked,
+    catalogue: &[NodeDef],
+    options: &Options,
+    facts: &mut Facts,
+) -> (Program, Decision) {
+    let graph = checked.graph();
+    let glance = Truth::of(GLANCE, graph, catalogue, options, facts);
+    let closed = program(graph, catalogue, options, facts);
+    let found = values(&closed);
+    let errors = glance.errors(&found);
+    let point = glance.errors(&glance.point);
+    if Verdict::of(&errors, &point, &glance.floor()).is_good() {
+        let audit = Audit {
+            outputs: audited_outputs(&point, &errors, &errors),
+            ..Audit::default()
+        };
+        let decision = Decision {
+            audit,
+            ..Decision::default()
+        };
+        return (closed, decision);
+    }
+    let truth = Truth::of(LOOK, graph, catalogue, options, facts);
+    let (point, floor) = (truth.errors(&truth.point), truth.floor());
+    let verdict = |errors: &Errors| Verdict::of(errors, &point, &floor);
+    let candidate = |facts: &Facts| {
+        let program = program(graph, catalogue, options, facts);
+        Candidate {
+            errors: truth.errors(&values(&program)),
+            program,
+            sampled: facts.sampled.clone(),
+            repeated: facts.repeated.clone(),
+        }
+    };
+    let closed_errors = truth.errors(&found);
+    let mut best = Candidate {
+        program: closed,
+        errors: closed_errors.clone(),
+        sampled: FxHashMap::default(),
+        repeated: FxHashMap::default(),
+    };
+
+    if !verdict(&best.errors).is_good() {
+        facts.repeated = repeated(checked, catalogue, options, facts);
+        if !facts.repeated.is_empty() {
+            let maps = candidate(facts);
+            if let Some(bands) = where_better(&maps.errors, &best.errors) {
+                for repeated in facts.repeated.values_mut() {
+                    repeated.bands = bands;
+                }
+                let maps = candidate(facts);
+                if verdict(&maps.errors).beats(verdict(&best.errors)) {
+                    best = maps;
+                }
+            }
+            facts.repeated.clone_from(&best.repeated);
+        }
+    }
+    let without = best.errors.clone();
+    for by in [Points::AtBeginnings, Points::AtEnds] {
+        if verdict(&best.errors).is_good() {
+            break;
+        }
+        facts.sampled = FxHashMap::default();
+        let steady = steady(graph);
+        facts.sampled = match by {
+            Points::AtBeginnings => beginnings(graph, catalogue, options, facts, &steady),
+            Points::AtEnds => ends(graph, &truth, [&without, &point, &floor], &steady),
+        };
+        if facts.sampled.is_empty() {
+            continue;
+        }
+        let everywhere = candidate(facts);
+        let Some(bands) = where_better(&everywhere.errors, &without) else {
+            continue;
+        };
+        for sampling in facts.sampled.values_mut() {
+            sampling.bands = bands;
+        }
+        let points = candidate(facts);
+        if verdict(&points.errors).beats(verdict(&best.errors)) {
+            best = points;
+        }
+    }
+    facts.sampled.clone_from(&best.sampled);
+
+    let sampled = (best.sampled.iter()).map(|(&node, by)| (node, Remedy::Sampled, by.bands));
+    let repeated = (best.repeated.iter()).map(|(&node, by)| (node, Remedy::Repeated, by.bands));
+    let mut replaced: Vec<Replaced> = sampled
+        .chain(repeated)
+        .map(|(node, remedy, bands)| Replaced {
+            node: NodeId(node as u32),
+            remedy,
+            sizes: sizes(bands),
+        })
+        .collect();
+    replaced.sort_by_key(|replaced| (replaced.node, replaced.remedy == Remedy::Sampled));
+    let audit = Audit {
+        outputs: audited_outputs(&point, &closed_errors, &best.errors),
+        replaced,
+    };
+    let decision = Decision {
+        sampled: best.sampled,
+        repeated: best.repeated,
+        audit,
+    };
+    (best.program, decision)
+}
+
+/// From which to which size of pixel bands reach.
+fn sizes([first, last]: [usize; 2]) -> [f32; 2] {
+    let low = if first == 0 {
+        0.0
+    } else {
+        0.5 * size_of(first)
+    };
+    let high = if last + 1 == BANDS {
+        f32::INFINITY
+    } else {
+        2.0 * size_of(last)
+    };
+    [low, high]
+}
+
+/// The errors of each output.
+fn audited_outputs(point: &Errors, closed: &Errors, auto: &Errors) -> Vec<AuditedOutput> {
+    let band = |output: usize, band: usize| AuditedBand {
+        size: size_of(band),
+        point: point[output][band],
+        closed: closed[output][band],
+        auto: auto[output][band],
+    };
+    (0..point.len())
+        .map(|output| AuditedOutput {
+            output,
+            bands: (0..BANDS).map(|i| band(output, i)).collect(),
+        })
+        .collect()
+}
+
+/// Which nodes are sampled.
+#[derive(Clone, Copy)]
+enum Points {
+    AtBeginnings,
+    AtEnds,
+}

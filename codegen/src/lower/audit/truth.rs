@@ -1,0 +1,197 @@
+//! What is right on a few footprints, and how far values are from it.
+
+use super::super::sampled::{BANDS, POINTS, Sampling, size_of};
+use super::super::{Facts, Method, NodeDef, Options, program};
+use super::EVERYWHERE;
+use crate::cpu::{Evaluator, Footprint, Scratch};
+use crate::ir::Program;
+use mipless_graph::Graph;
+use std::sync::LazyLock;
+
+/// Places of each size of footprint: the round ones, and the long ones askew.
+const ROUND: usize = 24;
+const LONG: usize = 8;
+const PLACES: usize = ROUND + LONG;
+/// How much longer the long ones are than wide.
+const RATIO: f32 = 8.0;
+/// Cosines and sines of their directions, the same numbers everywhere.
+const ASKEW: [[f32; 2]; 4] = [[0.8, 0.6], [-0.6, 0.8], [0.96, -0.28], [0.352, 0.936]];
+/// Points of the truth of a pixel: at first, and where that shows an error.
+pub(super) const GLANCE: u32 = 128;
+pub(super) const LOOK: u32 = 1024;
+
+/// The footprints at which graphs are audited, band after band.
+static FOOTPRINTS: LazyLock<Vec<Footprint>> = LazyLock::new(|| {
+    let mut footprints = Vec::new();
+    for band in 0..BANDS {
+        let size = size_of(band);
+        for place in 0..PLACES {
+            // The R2 sequence (Roberts 2018), in the unit square, and every fourth place anywhere.
+            let number = (band * PLACES + place + 1) as f64;
+            let at = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2]
+                .map(|step| (0.5 + number * step).fract());
+            let at = if place % 4 == 3 {
+                at.map(|x| 32.0 * x - 16.0)
+            } else {
+                at
+            };
+            let (long, [cos, sin]) = match place {
+                0..ROUND => (1.0, [1.0, 0.0]),
+                _ => (RATIO, ASKEW[place % ASKEW.len()]),
+            };
+            footprints.push(Footprint {
+                cell: at.map(|x| x.floor() as i32),
+                uv: at.map(|x| (x - x.floor()) as f32),
+                du: [long * size * cos, long * size * sin],
+                dv: [-size * sin, size * cos],
+            });
+        }
+    }
+    footprints
+});
+
+/// The values of a program's results at [`FOOTPRINTS`].
+pub(super) fn values(program: &Program) -> Vec<Vec<f32>> {
+    let parameters: Vec<f32> = (program.interface.parameters.iter())
+        .flat_map(|parameter| parameter.default.iter().copied())
+        .collect();
+    let mut values = Vec::new();
+    Evaluator::<f32>::of_program(program).evaluate_footprints(
+        &mut Scratch::new(),
+        &FOOTPRINTS,
+        &parameters,
+        &mut values,
+    );
+    values
+}
+
+/// What is right at [`FOOTPRINTS`], for the components of all outputs.
+pub(super) struct Truth {
+    mean: Vec<Vec<f32>>,
+    /// The variance of points within a footprint.
+    variance: Vec<Vec<f32>>,
+    pub(super) point: Vec<Vec<f32>>,
+    /// Of each output, the first component and the one after the last.
+    outputs: Vec<[usize; 2]>,
+    /// How many points there are in a pixel.
+    samples: u32,
+}
+
+/// Of each output, its errors by band.
+pub(super) type Errors = Vec<[f64; BANDS]>;
+
+impl Truth {
+    pub(super) fn of(
+        samples: u32,
+        graph: &Graph,
+        catalogue: &[NodeDef],
+        options: &Options,
+        facts: &Facts,
+    ) -> Self {
+        let with = |method, moments| {
+            let options = Options {
+                method,
+                moments,
+                ..*options
+            };
+            values(&program(graph, catalogue, &options, facts))
+        };
+        let mut mean = with(Method::Supersample(samples), true);
+        let variance = mean.split_off(mean.len() / 2);
+        let mut end = 0;
+        let outputs = (graph.outputs.iter())
+            .map(|output| {
+                let start = end;
+                end += output.ty.components();
+                [start, end]
+            })
+            .collect();
+        Self {
+            mean,
+            variance,
+            point: with(Method::Point, false),
+            outputs,
+            samples,
+        }
+    }
+
+    /// How far values are from the truth.
+    pub(super) fn errors(&self, values: &[Vec<f32>]) -> Errors {
+        self.over_bands(|component, pixel| {
+            let [found, right] =
+                [&values[component], &self.mean[component]].map(|all| displayed(all[pixel]));
+            (found - right).powi(2)
+        })
+    }
+
+    /// The errors that the truth itself has, at most.
+    pub(super) fn floor(&self) -> Errors {
+        self.over_bands(|component, pixel| {
+            f64::from(self.variance[component][pixel]).max(0.0) / f64::from(self.samples)
+        })
+    }
+
+    /// The roots of the means of squares over the components of an output and the pixels of a band.
+    fn over_bands(&self, square: impl Fn(usize, usize) -> f64) -> Errors {
+        let band = |[start, end]: [usize; 2], band: usize| {
+            let pixels = band * PLACES..(band + 1) * PLACES;
+            let all = (start..end).flat_map(|component| {
+                let square = &square;
+                pixels.clone().map(move |pixel| square(component, pixel))
+            });
+            (all.sum::<f64>() / ((end - start).max(1) * PLACES) as f64).sqrt()
+        };
+        (self.outputs.iter())
+            .map(|&output| std::array::from_fn(|i| band(output, i)))
+            .collect()
+    }
+
+    /// How an output is best sampled: see [`super::sampled`].
+    pub(super) fn sampling(&self, output: usize, is_steady: bool) -> Sampling {
+        let [start, end] = self.outputs[output];
+        let mean = |all: &[f32]| all.iter().map(|&x| f64::from(x)).sum::<f64>() / all.len() as f64;
+        let far: Vec<f64> = (start..end).map(|i| mean(&self.mean[i])).collect();
+        let kept = std::array::from_fn(|band| {
+            let pixels = band * PLACES..(band + 1) * PLACES;
+            let (mut between, mut within) = (0.0, 0.0);
+            for (component, far) in (start..end).zip(&far) {
+                for pixel in pixels.clone() {
+                    let variance = f64::from(self.variance[component][pixel]).max(0.0);
+                    within += variance / POINTS as f64;
+                    between += (f64::from(self.mean[component][pixel]) - far).powi(2)
+                        - variance / f64::from(self.samples);
+                }
+            }
+            // In steps, so that the last digits of a platform's functions do not show.
+            let kept = between.max(0.0) / (between.max(0.0) + within).max(1e-30);
+            if is_steady && within > 0.0 && kept.is_finite() {
+                (64.0 * kept).round() as f32 / 64.0
+            } else {
+                1.0
+            }
+        });
+        Sampling {
+            far: far
+                .into_iter()
+                .map(|x| (1024.0 * x).round() as f32 / 1024.0)
+                .collect(),
+            kept,
+            bands: EVERYWHERE,
+        }
+    }
+}
+
+/// A number as a display shows it, to both sides of 0: normals and heights are numbers too.
+fn displayed(x: f32) -> f64 {
+    let size = f64::from(x.abs().min(1.0));
+    let encoded = if size <= 0.003_130_8 {
+        12.92 * size
+    } else {
+        1.055 * size.powf(1.0 / 2.4) - 0.055
+    };
+    if x.is_finite() {
+        encoded.copysign(f64::from(x))
+    } else {
+        2.0
+    }
+}

@@ -1,0 +1,60 @@
+//! Which of two ways to filter a graph is better.
+
+use super::super::sampled::BANDS;
+use super::truth::Errors;
+
+/// How far off an output may be, root mean square over places, as a display shows it.
+pub(super) const TOLERANCE: f64 = 0.03;
+/// Beyond this an output that is worse than a point is worth samples.
+const NOTICEABLE: f64 = 0.01;
+/// By how much samples must be better than a closed form that is merely inexact.
+const BETTER: f64 = 0.7;
+
+/// How bad errors are: in how many bands an output is worse than a point or misses the tolerance,
+/// and the mean of their squares.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Verdict {
+    worse: usize,
+    off: usize,
+    square: f64,
+}
+
+impl Verdict {
+    pub(super) fn of(errors: &Errors, point: &Errors, floor: &Errors) -> Self {
+        let (mut worse, mut off, mut square) = (0, 0, 0.0);
+        for (errors, (point, floor)) in errors.iter().zip(point.iter().zip(floor)) {
+            for (error, (point, floor)) in errors.iter().zip(point.iter().zip(floor)) {
+                worse += usize::from(is_worse(*error, *point, *floor));
+                off += usize::from(*error > TOLERANCE);
+                square += error * error;
+            }
+        }
+        Self { worse, off, square }
+    }
+
+    pub(super) fn is_good(self) -> bool {
+        self.worse == 0 && self.off == 0
+    }
+
+    /// Whether this is so much better that points are worth their time.
+    pub(super) fn beats(self, other: Self) -> bool {
+        self.worse < other.worse
+            || self.worse == other.worse && self.square < BETTER * BETTER * other.square
+    }
+}
+
+pub(super) fn is_worse(error: f64, point: f64, floor: f64) -> bool {
+    error > NOTICEABLE && error > point + floor
+}
+
+/// From the first band to the last one in which something else is better for the outputs, where it
+/// matters.
+pub(super) fn where_better(other: &Errors, closed: &Errors) -> Option<[usize; 2]> {
+    let better = |band: &usize| {
+        let square = |errors: &Errors| errors.iter().map(|e| e[*band] * e[*band]).sum::<f64>();
+        let matters = closed.iter().any(|errors| errors[*band] > NOTICEABLE);
+        matters && square(other) < BETTER * square(closed)
+    };
+    let bands: Vec<usize> = (0..BANDS).filter(better).collect();
+    Some([*bands.first()?, *bands.last()?])
+}

@@ -1,0 +1,274 @@
+//! A node by points inside the footprint, where its closed form is measured to be wrong: what
+//! follows it stays closed.
+//!
+//! Seven points of equal weight, the centre and a hexagon of radius √(7/3) standard deviations, have
+//! the mean and the covariance of the footprint, so that whatever is linear in it is exact. The
+//! hexagon turns from pixel to pixel, which makes noise of what would be a moiré. Mean, linear
+//! response and the rest of the variance of the points are the node's signal.
+//!
+//! Where a footprint holds so much of the texture that its true mean hardly varies from place to
+//! place, seven points say less than the mean of the texture itself. The best linear estimate from
+//! both (Wiener) keeps the share V/(V + N/7) of the points' deviation from it, with V the variance
+//! of the true mean over places and N that of points within a footprint, as [`super::audit`]
+//! measures them.
+
+use super::fusion::region;
+use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
+use crate::float::Float as _;
+use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Vec2};
+use crate::moments::{Algebra, Mode, Signal};
+use mipless_graph::Source;
+use std::f64::consts::{FRAC_PI_3, TAU};
+
+/// How many points there are.
+pub(super) const POINTS: usize = 7;
+/// How many bands of footprints are told apart.
+pub(super) const BANDS: usize = 7;
+/// The first band, as log₂ of the footprint's shorter axis in uv a pixel.
+const FINEST: i32 = -10;
+/// From one band to the next, in octaves.
+const OCTAVES: i32 = 2;
+/// How many turns of the hexagon there are.
+const TURNS: u32 = 64;
+
+/// How a node is sampled.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sampling {
+    /// The mean of the texture, for each component.
+    pub(super) far: Vec<f32>,
+    /// The share of the points' deviation from it that is kept, in each band.
+    pub(super) kept: [f32; BANDS],
+    /// The first and the last band where the node is sampled.
+    pub(super) bands: [usize; 2],
+}
+
+/// The shorter axis of the footprints of a band, in uv a pixel.
+pub(super) fn size_of(band: usize) -> f32 {
+    ((FINEST + OCTAVES * band as i32) as f32).exp2()
+}
+
+impl<'g, 'b> Lower<'g, 'b> {
+    /// How a node is to be sampled, if it is: by `auto` alone, in what has the pixel's footprint.
+    pub(super) fn sampling(&self, index: usize) -> Option<&'g Sampling> {
+        let compiler = self.compiler;
+        let applies = compiler.options.method == Method::Auto
+            && self.algebra.mode.spreads()
+            && !self.measures
+            && !self.in_rule;
+        let sampling = compiler.facts.sampled.get(&index);
+        sampling.filter(|_| applies)
+    }
+
+    /// The node by points inside the footprint in the bands where it is to be, else `closed`.
+    pub(super) fn sampled(
+        &mut self,
+        index: usize,
+        closed: &[Signal<'b>],
+        sampling: &Sampling,
+    ) -> Bundle<'b> {
+        let (compiler, count) = (self.compiler, closed.len());
+        let sample = self.function(&format!("sample of {index}"), |module| {
+            let point = point_function(compiler, module, index);
+            sample_function(compiler, module, &point, index)
+        });
+        let b = self.b();
+        let place = self.arguments.clone();
+        let band = band(&place);
+        let within = within(band, sampling.bands);
+        let everywhere = within.as_constant() == Some(true);
+
+        let ([cell_x, cell_y], [u, v]) = (place.footprint.cell, place.footprint.fraction);
+        let mut turn = b.uint(0x51ed_270b);
+        for word in [cell_x.to_uint(), cell_y.to_uint(), u.bits(), v.bits()] {
+            turn = (turn ^ word).scramble();
+        }
+        let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
+        let start = vec![b.float(0.0); Sums::COUNT * count];
+        let points = within.select(POINTS as u32, 0u32);
+        let sums = b.fold(&sample, points, start, (turn, place));
+
+        let weight = 1.0 / POINTS as f32;
+        let mut kept = b.float(sampling.kept[0]);
+        for (i, pair) in sampling.kept.windows(2).enumerate() {
+            kept += (pair[1] - pair[0]) * (band - i as f32).clamp(0.0, 1.0);
+        }
+        (closed.iter().zip(sums.chunks(Sums::COUNT)))
+            .zip(&sampling.far)
+            .map(|((closed, sums), &far)| {
+                let sums = Sums::of(sums);
+                let apart = weight * sums.apart;
+                let g = Vec2([weight * sums.along[0], weight * sums.along[1]]);
+                let variance = weight * sums.squares - apart.square();
+                let mean = sums.centre + apart;
+                let points = Signal {
+                    g,
+                    private: (variance - g.norm2()).max(0.0),
+                    ..Signal::certain(far + kept * (mean - far)).with_range(closed.range)
+                };
+                if everywhere {
+                    points
+                } else {
+                    closed.select(within, &points).with_range(closed.range)
+                }
+            })
+            .collect()
+    }
+}
+
+/// Whether a footprint's band lies between two; what lies beyond the first or the last of all is
+/// theirs.
+pub(super) fn within<'b>(band: Float<'b>, [first, last]: [usize; 2]) -> Bool<'b> {
+    let mut within = band.builder().literal(true);
+    if first > 0 {
+        within = within & band.gt(first as f32 - 0.5);
+    }
+    if last + 1 < BANDS {
+        within = within & band.lt(last as f32 + 0.5);
+    }
+    within
+}
+
+/// In which band the footprint lies, counted from 0, as a real number: by its shorter axis.
+pub(super) fn band<'b>(place: &Arguments<'b>) -> Float<'b> {
+    let (right, down) = (place.footprint.right, place.footprint.down);
+    let area = (right[0] * down[1] - right[1] * down[0]).abs();
+    let squares = Vec2(right).norm2() + Vec2(down).norm2();
+    // For a round footprint its size; for a long one √2 times the shorter axis.
+    let size = area * std::f32::consts::SQRT_2 / squares.max(1e-30).sqrt();
+    let octaves = size.clamp(1e-12, 1e12).ln() * std::f32::consts::LOG2_E;
+    (octaves - FINEST as f32) * (1.0 / OCTAVES as f32)
+}
+
+/// What is summed over the points for one component: the value at the centre, and of the values'
+/// differences from it the sum, that of the squares and those with the place.
+struct Sums<'b> {
+    centre: Float<'b>,
+    apart: Float<'b>,
+    squares: Float<'b>,
+    along: [Float<'b>; 2],
+}
+
+impl<'b> Sums<'b> {
+    const COUNT: usize = 5;
+
+    fn of(sums: &[Float<'b>]) -> Self {
+        let [centre, apart, squares, x, y] = sums else {
+            panic!("{} sums a component", Self::COUNT)
+        };
+        Self {
+            centre: *centre,
+            apart: *apart,
+            squares: *squares,
+            along: [*x, *y],
+        }
+    }
+}
+
+/// The node at a point.
+fn point_function(compiler: &Compiler<'_>, module: &mut Module, index: usize) -> FunctionRef {
+    let graph = compiler.graph;
+    let name = super::identifier(&graph.nodes[index].name);
+    let b = &compiler.builder(format!("{name}_at"), "A part of the texture at a point.");
+    let arguments = Arguments::declare(b, graph);
+    let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
+    let mut uses = vec![0; graph.nodes.len()];
+    uses[index] = 1;
+    for node in region(compiler, index, &[]) {
+        for input in &graph.nodes[node].inputs {
+            if let Source::Node(id) = input.source {
+                uses[id.index()] += 1;
+            }
+        }
+    }
+    lower.run_nodes(uses);
+    let bundle = lower.bundles[index]
+        .take()
+        .expect("what is asked for is read once more than by its readers");
+    value_results(b, &bundle);
+    b.finish(module)
+}
+
+/// The points of every turn: places in standard deviations, to 12 significant bits, so that they are
+/// the same in f32 and f64.
+fn places() -> Vec<f32> {
+    let radius = (POINTS as f64 / 3.0).sqrt();
+    let mut places = Vec::new();
+    for turn in 0..TURNS {
+        places.extend([0.0, 0.0]);
+        for corner in 0..POINTS - 1 {
+            let turn = TAU / 6.0 * f64::from(turn) / f64::from(TURNS);
+            let angle = turn + FRAC_PI_3 * corner as f64;
+            places.extend([angle.cos(), angle.sin()].map(|x| ((radius * x) as f32).high()));
+        }
+    }
+    places
+}
+
+/// One more point: a turn of the fold.
+fn sample_function(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    point: &FunctionRef,
+    index: usize,
+) -> FunctionRef {
+    let count = point.results.len();
+    let table = module.table("sampled_places", places());
+    let name = super::identifier(&compiler.graph.nodes[index].name);
+    let b = &Builder::new(
+        format!("{name}_sample"),
+        "One more point inside the footprint.",
+    );
+    let index = b.uint_param("index");
+    let state: Vec<Float<'_>> = (0..Sums::COUNT * count)
+        .map(|i| b.float_param(format!("state_{i}")))
+        .collect();
+    let turn = b.uint_param("turn");
+    let arguments = Arguments::declare(b, compiler.graph);
+    let at = (turn + index) * 2u32;
+    let place = [0u32, 1].map(|axis| b.load(table, at + axis));
+    let sd = compiler.options.filter.sd();
+    let values = b.call(point, arguments.moved(place.map(|x| x * sd)).at_point());
+    let first = index.equals(0u32);
+    for (i, (&value, sums)) in values.iter().zip(state.chunks(Sums::COUNT)).enumerate() {
+        let sums = Sums::of(sums);
+        let centre = first.select(value, sums.centre);
+        let apart = value - centre;
+        let along = [0, 1].map(|axis| sums.along[axis] + apart * place[axis]);
+        let next = [
+            centre,
+            sums.apart + apart,
+            sums.squares + apart.square(),
+            along[0],
+            along[1],
+        ];
+        for (j, value) in next.into_iter().enumerate() {
+            b.result(format!("state_{}", Sums::COUNT * i + j), value);
+        }
+    }
+    b.finish(module)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_have_the_mean_and_the_covariance_of_the_footprint() {
+        for turn in places().chunks(2 * POINTS) {
+            let points: Vec<[f64; 2]> = (turn.chunks(2))
+                .map(|p| [f64::from(p[0]), f64::from(p[1])])
+                .collect();
+            let mean =
+                |f: &dyn Fn(&[f64; 2]) -> f64| points.iter().map(f).sum::<f64>() / POINTS as f64;
+            for (moment, right) in [
+                (mean(&|p| p[0]), 0.0),
+                (mean(&|p| p[1]), 0.0),
+                (mean(&|p| p[0] * p[0]), 1.0),
+                (mean(&|p| p[1] * p[1]), 1.0),
+                (mean(&|p| p[0] * p[1]), 0.0),
+            ] {
+                assert!((moment - right).abs() < 1e-3, "{moment} for {right}");
+            }
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Functions of position that repeat, as maps on the torus: evaluated once over a period, they are
+//! filtered exactly for any footprint, whatever nodes they are built of.
+
+use super::fusion::region;
+use super::period::{Function, Periods, directions, periods, steps};
+use super::place::Place;
+use super::sampled::{band, within};
+use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
+use crate::ir::{Builder, FunctionRef, Module, Vec2};
+use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
+use mipless_graph::Source;
+use std::sync::{Arc, LazyLock};
+
+/// One period, in units of both.
+const DOMAIN: Domain = Domain {
+    bounds: [[0.0, 1.0]; 2],
+    periodic: true,
+    detail: 1,
+};
+
+/// The most components of a map.
+const COMPONENTS: usize = 4;
+
+/// How a node that repeats is read.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Repeated {
+    pub(super) periods: Periods,
+    /// The first and the last band of footprints where it is read from a map.
+    pub(super) bands: [usize; 2],
+}
+
+/// The periods of a node that depends on position alone, if it repeats along two directions.
+pub(super) fn found(compiler: &Compiler<'_>, index: usize) -> Option<Periods> {
+    let region = region(compiler, index, &[]);
+    if compiler.graph.nodes[index].ty.components() > COMPONENTS {
+        return None;
+    }
+    let entry = |nodes: &[usize]| {
+        let mut module = Module::default();
+        let alone = compiler.with_options(compiler.options);
+        let b = &Builder::new("region", "Nodes at a point.");
+        let arguments = Arguments::declare(b, compiler.graph);
+        let mut lower = Lower::with(&alone, &mut module, Algebra::new(b, Mode::Point), arguments);
+        let bundle = values(&mut lower, &region, nodes);
+        value_results(b, &bundle);
+        b.finish(&mut module);
+        Function::new(&module)
+    };
+    let directions = directions(&mut entry(&region));
+    if directions.is_empty() {
+        return None;
+    }
+    periods(&mut entry(&[index]), &directions, &steps(compiler, &region))
+}
+
+/// Lowers the nodes of a region, inputs first; the components of some of them.
+fn values<'b>(lower: &mut Lower<'_, 'b>, region: &[usize], of: &[usize]) -> Bundle<'b> {
+    for &node in region {
+        let node_of = &lower.compiler.graph.nodes[node];
+        let bundle = (lower.compiler.catalogue[node_of.definition].lower)(lower, node_of);
+        lower.bundles[node] = Some(bundle);
+    }
+    let bundles = of.iter().map(|&node| lower.bundles[node].clone());
+    bundles.flatten().flatten().collect()
+}
+
+impl<'b> Lower<'_, 'b> {
+    /// A node that repeats, by a map on the torus, where `auto` is to read it so.
+    pub(super) fn repeated(&mut self, index: usize, closed: &[Signal<'b>]) -> Option<Bundle<'b>> {
+        let compiler = self.compiler;
+        let applies =
+            compiler.options.method == Method::Auto && self.algebra.mode.spreads() && !self.in_rule;
+        let repeated = compiler.facts.repeated.get(&index).filter(|_| applies)?;
+        let periods = repeated.periods;
+        let name = super::identifier(&compiler.graph.nodes[index].name);
+        let ranges: Vec<[f32; 2]> = closed.iter().map(|signal| signal.range).collect();
+        let map = compiler.mapped(self.module, &format!("torus {index}"), |module| {
+            let of = function(compiler, module, index, periods);
+            let mut alone = Module::default();
+            let other = compiler.with_options(compiler.options);
+            function(&other, &mut alone, index, periods);
+            let grid: Grid = Arc::new(LazyLock::new(Box::new(move || {
+                super::map::sampled(&alone, DOMAIN)
+            })));
+            Map::new(module, &name, of, DOMAIN, ranges, &grid)
+        });
+        let [[a, c], [b, d]] = periods;
+        let area = a * d - b * c;
+        // uv = D p, so p = D⁻¹ uv.
+        let inverse = [[d / area, -b / area], [-c / area, a / area]];
+        let surface = self.surface();
+        let place = inverse.map(|[of_u, of_v]| {
+            let parts = [(of_u, &surface[0]), (of_v, &surface[1])];
+            let mut parts = (parts.into_iter())
+                .filter(|(by, _)| *by != 0.0)
+                .map(|(by, coordinate)| coordinate * by as f32);
+            let first = parts.next().expect("a row of an inverse is not 0");
+            parts.fold(first, |sum, part| sum + part)
+        });
+        let bundle = self.algebra.map([&place[0], &place[1]], &map);
+        let within = within(band(&self.arguments), repeated.bands);
+        if within.as_constant() == Some(true) {
+            return Some(bundle);
+        }
+        let both = closed.iter().zip(&bundle);
+        Some(
+            both.map(|(closed, other)| closed.select(within, other))
+                .collect(),
+        )
+    }
+}
+
+/// The node as a function of two numbers, in periods.
+fn function(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    index: usize,
+    [first, second]: Periods,
+) -> FunctionRef {
+    let name = super::identifier(&compiler.graph.nodes[index].name);
+    let b = &Builder::new(format!("{name}_of"), "A function that repeats.");
+    let p = Vec2(b.float_params(["x", "y"]));
+    let at = [0, 1].map(|axis| {
+        let row = [first[axis] as f32, second[axis] as f32].map(|x| b.float(x));
+        p.dot(Vec2(row))
+    });
+    let place = Place::at_point(b, at);
+    let arguments = Arguments::of_place(place);
+    let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
+    let bundle = values(&mut lower, &region(compiler, index, &[]), &[index]);
+    value_results(b, &bundle);
+    b.finish(module)
+}
+
+/// The nodes of which something is worth a map: those that depend on position alone and are read by
+/// what does not, or by an output.
+pub(super) fn tops(compiler: &Compiler<'_>, of_position: &[bool]) -> Vec<usize> {
+    let graph = compiler.graph;
+    let mut top = vec![false; graph.nodes.len()];
+    for output in &graph.outputs {
+        top[output.node.index()] |= of_position[output.node.index()];
+    }
+    for (index, node) in graph.nodes.iter().enumerate() {
+        if of_position[index] || compiler.facts.live[index] == 0 {
+            continue;
+        }
+        for input in &node.inputs {
+            if let Source::Node(id) = input.source {
+                top[id.index()] |= of_position[id.index()];
+            }
+        }
+    }
+    (0..top.len()).filter(|&index| top[index]).collect()
+}

@@ -1,0 +1,134 @@
+//! Graphs as strangers write them, of which the closed forms alone are wrong: `auto` finds that out
+//! when it compiles, and is nowhere worse than a point.
+
+use mipless::{Footprint, Method, Options, Texture};
+
+/// Pixels along a side of a window.
+const SIDE: usize = 40;
+/// The widths of a pixel, in units of texture space.
+const PIXELS: [f32; 5] = [0.005, 0.02, 0.0625, 0.25, 1.0];
+/// By how much a window's error may be above that of a point: the truth's own noise.
+const FLOOR: f64 = 0.004;
+
+/// What people build of `fract`, `floor` and the like of coordinates `u` and `v`, of the ids `id` of
+/// regions and `cell` of cells; the error of `o` that is allowed where a pixel is finest, and
+/// anywhere.
+const GRAPHS: [(&str, [f64; 2], &str); 8] = [
+    (
+        "stripes by floor and modulo",
+        [0.01, 0.02],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"u"},"in2":8}},"f":{"type":"floor","inputs":{"in":{"node":"x"}}},"o":{"type":"modulo","inputs":{"in1":{"node":"f"},"in2":2}}"#,
+    ),
+    (
+        "a grid by the minimum of two fracts",
+        [0.02, 0.02],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"uv"},"in2":4}},"f":{"type":"fract","inputs":{"in":{"node":"x"}}},"p":{"type":"extract","inputs":{"in":{"node":"f"},"index":0}},"q":{"type":"extract","inputs":{"in":{"node":"f"},"index":1}},"m":{"type":"min","inputs":{"in1":{"node":"p"},"in2":{"node":"q"}}},"o":{"type":"step","inputs":{"in":{"node":"m"},"edge":0.2}}"#,
+    ),
+    (
+        "a circle in every cell",
+        [0.02, 0.02],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"uv"},"in2":4}},"f":{"type":"fract","inputs":{"in":{"node":"x"}}},"c":{"type":"subtract","inputs":{"in1":{"node":"f"},"in2":[0.5,0.5]}},"m":{"type":"magnitude","inputs":{"in":{"node":"c"}}},"o":{"type":"smoothstep","inputs":{"in":{"node":"m"},"low":0.3,"high":0.35}}"#,
+    ),
+    (
+        "a checkerboard by the sum of two floors",
+        [0.01, 0.02],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"uv"},"in2":6}},"f":{"type":"floor","inputs":{"in":{"node":"x"}}},"p":{"type":"extract","inputs":{"in":{"node":"f"},"index":0}},"q":{"type":"extract","inputs":{"in":{"node":"f"},"index":1}},"s":{"type":"add","inputs":{"in1":{"node":"p"},"in2":{"node":"q"}}},"o":{"type":"modulo","inputs":{"in1":{"node":"s"},"in2":2}}"#,
+    ),
+    (
+        "crossing waves on turned axes",
+        [0.01, 0.02],
+        r#""t":{"type":"rotate2d","inputs":{"in":{"node":"uv"},"amount":30}},"x":{"type":"multiply","inputs":{"in1":{"node":"t"},"in2":[30,20]}},"w":{"type":"sin","inputs":{"in":{"node":"x"}}},"p":{"type":"extract","inputs":{"in":{"node":"w"},"index":0}},"q":{"type":"extract","inputs":{"in":{"node":"w"},"index":1}},"s":{"type":"max","inputs":{"in1":{"node":"p"},"in2":{"node":"q"}}},"o":{"type":"step","inputs":{"in":{"node":"s"},"edge":0.5}}"#,
+    ),
+    (
+        "random colours of regions",
+        [0.015, 0.08],
+        r#""o":{"type":"randomcolor","inputs":{"in":{"node":"id"}}}"#,
+    ),
+    (
+        "random colours of cells",
+        [0.015, 0.08],
+        r#""o":{"type":"randomcolor","inputs":{"in":{"node":"cell"}}}"#,
+    ),
+    (
+        "a ramp of the steps of a coordinate",
+        [0.01, 0.02],
+        r##""x":{"type":"multiply","inputs":{"in1":{"node":"v"},"in2":5}},"f":{"type":"fract","inputs":{"in":{"node":"x"}}},"s":{"type":"multiply","inputs":{"in1":{"node":"f"},"in2":4}},"r":{"type":"floor","inputs":{"in":{"node":"s"}}},"o":{"type":"colorramp","inputs":{"in":{"node":"r"},"stops":[{"at":0,"value":"#204060"},{"at":1,"value":"#f0e0a0"},{"at":2,"value":"#803010"},{"at":3,"value":"#101010"}]}}"##,
+    ),
+];
+
+fn texture(nodes: &str) -> Texture {
+    let json = format!(
+        r#"{{"version":1,"name":"field","nodes":{{
+            "uv":{{"type":"texcoord"}},
+            "u":{{"type":"extract","inputs":{{"in":{{"node":"uv"}},"index":0}}}},
+            "v":{{"type":"extract","inputs":{{"in":{{"node":"uv"}},"index":1}}}},
+            "id":{{"type":"worleynoise2d","inputs":{{"frequency":6,"style":"solid"}}}},
+            "cell":{{"type":"cellnoise2d","inputs":{{"frequency":6}}}},
+            {nodes}}},"outputs":{{"out":{{"node":"o"}}}}}}"#
+    );
+    Texture::from_json(&json).unwrap_or_else(|mistakes| panic!("{nodes}: {mistakes:?}"))
+}
+
+/// Straight windows of pixels of each size.
+fn footprints() -> Vec<Footprint> {
+    let mut footprints = Vec::new();
+    for pixel in PIXELS {
+        for i in 0..SIDE * SIDE {
+            let at = [i % SIDE, i / SIDE].map(|i| 0.137 + (i as f32 + 0.5) * pixel);
+            footprints.push(Footprint {
+                cell: at.map(|x| x.floor() as i32),
+                uv: at.map(|x| x - x.floor()),
+                du: [pixel, 0.0],
+                dv: [0.0, pixel],
+            });
+        }
+    }
+    footprints
+}
+
+fn values(texture: &Texture, method: Method) -> Vec<Vec<f32>> {
+    let options = Options {
+        method,
+        ..Options::default()
+    };
+    texture.evaluator(&options).evaluate(&footprints())
+}
+
+/// The root mean square difference in each window, as a display shows it.
+fn errors(found: &[Vec<f32>], truth: &[Vec<f32>]) -> Vec<f64> {
+    let pixels = SIDE * SIDE;
+    (0..PIXELS.len())
+        .map(|window| {
+            let of_window = window * pixels..(window + 1) * pixels;
+            let squares = (found.iter().zip(truth)).flat_map(|(found, truth)| {
+                let of_window = of_window.clone();
+                of_window.map(|i| {
+                    let [x, y] = [found[i], truth[i]]
+                        .map(|x| f64::from(mipless_runtime::srgb::srgb_from_linear(x)));
+                    (x - y).powi(2)
+                })
+            });
+            (squares.sum::<f64>() / (pixels * found.len()) as f64).sqrt()
+        })
+        .collect()
+}
+
+#[test]
+fn graphs_of_strangers_are_filtered() {
+    let mut wrong = Vec::new();
+    for (name, [finest, any], nodes) in GRAPHS {
+        let texture = texture(nodes);
+        let truth = values(&texture, Method::Supersample(1024));
+        let [auto, point] =
+            [Method::Auto, Method::Point].map(|method| errors(&values(&texture, method), &truth));
+        println!("{name}: auto {auto:.4?}, point {point:.4?}");
+        for (window, (&auto, &point)) in auto.iter().zip(&point).enumerate() {
+            let bound = if window == 0 { finest } else { any };
+            if auto > bound || auto > point + FLOOR {
+                let pixel = PIXELS[window];
+                wrong.push(format!("{name} at {pixel}: {auto:.4}, point {point:.4}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
