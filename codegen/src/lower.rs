@@ -36,7 +36,9 @@ pub use upstream::{Over, Upstream, Widened};
 use crate::ir::{Builder, Float, FunctionRef, Interface, Label, Library, Module, Port, Program};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use arguments::Arguments;
-use mipless_graph::{Behaviour, Checked, Graph, InputView, Node, NodeSpec, Picture, Source, Type};
+use mipless_graph::{
+    Behaviour, Checked, Graph, InputView, Node, NodeSpec, Picture, Reach, Source, Type,
+};
 use rustc_hash::FxHashMap;
 use std::any::Any;
 use std::cell::RefCell;
@@ -181,6 +183,18 @@ impl InputView for Varying {
 
     fn picture(&self, _: &str) -> Option<&Picture> {
         None
+    }
+
+    fn same(&self, _: &str, _: &str) -> bool {
+        false
+    }
+
+    fn components(&self, _: &str) -> usize {
+        1
+    }
+
+    fn reach(&self, _: &str) -> Reach {
+        Reach::ANY
     }
 }
 

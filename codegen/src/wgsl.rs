@@ -52,7 +52,7 @@ pub use name::identifier;
 use crate::ir::{FunctionId, Inst, Numbers, Program, Type};
 use entry::{Names, entry_text, face, push_entry_point, push_structs};
 use function::{Context, Signature};
-use name::{Scope, camel};
+use name::{Scope, callable, camel};
 use serde::Serialize;
 
 /// The binding of the footprints, in group 0.
@@ -260,7 +260,7 @@ impl Shader {
 /// [`verify`](crate::ir::verify).
 pub fn emit(program: &Program, options: &Options) -> Shader {
     let module = &program.module;
-    let prefix = identifier(&program.interface.name);
+    let prefix = callable(identifier(&program.interface.name));
     let stem = prefix.strip_suffix("_value").unwrap_or(&prefix);
     let mut globals = Scope::default();
     globals.take("Footprint".to_owned());
@@ -298,7 +298,8 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
                 return Some(Signature::of_entry(&names.function));
             }
             reached[index].then(|| {
-                let name = globals.take(identifier(&format!("{stem}_{}", function.name)));
+                let name = callable(identifier(&format!("{stem}_{}", function.name)));
+                let name = globals.take(name);
                 Signature::new(name, function, &mut globals)
             })
         })

@@ -16,12 +16,14 @@
 
 mod class;
 mod closure;
+mod pole;
+mod reached;
 mod report;
 mod sources;
 
 use crate::{
     Behaviour, Diagnostic, Graph, Input, InputView, Literal, Node, NodeId, Picture, PortType,
-    Source, Type,
+    Reach, Source, Type,
 };
 pub use class::Class;
 use class::{Incoming, Reason};
@@ -48,6 +50,12 @@ pub struct Signal {
     /// dimensionless; the error of the sources' own filtering is not in it. An estimate from
     /// measured cascades, not a bound.
     pub error: f32,
+    /// What values it can have, as far as is known; of a noise, those within four standard
+    /// deviations of its mean.
+    pub reach: Reach,
+    /// Whether nothing is known of its values because it, or what it depends on, has been reported to
+    /// have no moments: what follows from that is not reported again.
+    follows: bool,
     /// Whether it depends on the position in space.
     space: bool,
     /// Why it has this class.
@@ -131,6 +139,11 @@ fn in_space(signals: &[Signal], input: &Input) -> bool {
     }
 }
 
+/// Whether nothing is known of an input because of something that has been reported.
+fn follows(signals: &[Signal], input: &Input) -> bool {
+    matches!(input.source, Source::Node(node) if signals[node.index()].follows)
+}
+
 impl InputView for View<'_> {
     fn varies(&self, port: &str) -> bool {
         varies(self.signals, self.node.input(port))
@@ -174,13 +187,27 @@ impl InputView for View<'_> {
     fn picture(&self, port: &str) -> Option<&Picture> {
         self.graph.images.get(self.choice(port)).map(Arc::as_ref)
     }
+
+    fn same(&self, first: &str, second: &str) -> bool {
+        let [first, second] = [first, second].map(|port| &self.node.input(port).source);
+        matches!((first, second), (Source::Node(x), Source::Node(y)) if x == y)
+    }
+
+    fn components(&self, port: &str) -> usize {
+        self.node.input(port).ty.components()
+    }
+
+    fn reach(&self, port: &str) -> Reach {
+        reached::of(self.graph, self.signals, self.node.input(port))
+    }
 }
 
 /// Finds the statistics of every signal.
 ///
 /// # Errors
 /// `unknown-statistics` for each node without statistics that an output needs, unless sampling is
-/// allowed, when it is a warning of the [`Checked`]; `unread-file` for each file that such a node
+/// allowed, when it is a warning of the [`Checked`]; `out-of-range` for each port that divides by a
+/// number that is or may be 0, the same everywhere; `unread-file` for each file that such a node
 /// names and whose picture is not in [`Graph::images`].
 pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagnostic>> {
     let needed = needed(&graph);
@@ -190,11 +217,17 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
     let mut incoming = Vec::new();
     for (index, node) in graph.nodes.iter().enumerate() {
         let id = NodeId(u32::try_from(index).expect("at most a million nodes"));
-        let behaviour = (node.spec.class)(&View {
+        let view = View {
             graph: &graph,
             node,
             signals: &signals,
-        });
+        };
+        let pole = pole::divided(&view);
+        let behaviour = match (node.spec.class)(&view) {
+            own @ (Behaviour::Unknown(_) | Behaviour::Refused { .. }) => own,
+            own => pole.as_ref().and_then(pole::Pole::behaviour).unwrap_or(own),
+        };
+        let reach = (node.spec.reach)(&view);
         incoming.clear();
         for (port, input) in node.spec.inputs.iter().zip(&node.inputs) {
             if varies(&signals, input) {
@@ -209,9 +242,26 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
         let position = behaviour == Behaviour::Position && node.ty == Type::Vector3;
         let space = position || node.inputs.iter().any(|input| in_space(&signals, input));
         let signal = class::signal(id, node, behaviour, &incoming);
-        signals.push(Signal { space, ..signal });
+        let known = node.inputs.iter().all(|input| !follows(&signals, input));
+        let singular = matches!(behaviour, Behaviour::NoMoments { .. });
+        let bounded = reach.whole(node.ty.components()).is_bounded();
+        signals.push(Signal {
+            space,
+            reach,
+            follows: singular || (!known && !bounded),
+            ..signal
+        });
         if !needed[index] {
             continue;
+        }
+        let mistakes = pole::diagnostics(&graph, &signals, node, pole.as_ref(), behaviour);
+        for diagnostic in mistakes {
+            let list = if diagnostic.is_error() {
+                &mut errors
+            } else {
+                &mut warnings
+            };
+            list.push(diagnostic);
         }
         if let Behaviour::Refused { port, reason } = behaviour {
             let message = format!("`{port}` of `{}` does not fit its other inputs", node.name);

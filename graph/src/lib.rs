@@ -19,6 +19,7 @@ mod document;
 mod graph;
 mod image;
 mod load;
+mod reach;
 mod resolve;
 mod schema;
 mod setting;
@@ -31,12 +32,13 @@ pub use document::{Binding, Body, Document, InputEntry, Map, NodeEntry, Referenc
 pub use graph::{Graph, Input, Node, NodeId, Output, Parameter, ParameterId, Source};
 pub use image::{FileReference, Images, Picture};
 pub use load::{Loaded, load};
+pub use reach::{Interval, Reach};
 pub use resolve::{MAX_NESTING, MAX_NODES, linear_from_srgb, resolve};
 pub use schema::schema;
 pub use setting::{SettingError, parse_setting};
 pub use spec::{
     Behaviour, Category, ClassRule, Default, Doc, InputView, NodeSpec, OutputType, PortSpec,
-    PortType, Range,
+    PortType, Range, ReachRule,
 };
 pub use types::{Literal, Stop, Stops, Type};
 

@@ -1,7 +1,7 @@
 //! Node specs as data: the reference pages, the JSON Schema and the catalogue dump are generated
 //! from them, and the resolver checks documents against them.
 
-use crate::{Picture, Type};
+use crate::{Picture, Reach, Type};
 
 /// What kind of node it is; orders the catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -267,6 +267,14 @@ pub enum Behaviour {
     },
     /// A non-linear function of position alone, filtered in closed form.
     Pattern,
+    /// A function of its varying inputs whose mean or variance does not exist where `port` reaches
+    /// what it may: what filters it is only bounded. A warning, unless the input is constant.
+    NoMoments {
+        /// The input.
+        port: &'static str,
+        /// Why, as a sentence of its own.
+        reason: &'static str,
+    },
     /// No statistics, for this reason.
     Unknown(&'static str),
     /// The uniform ports contradict each other: a mistake at `port`, for this reason.
@@ -295,10 +303,20 @@ pub trait InputView {
     fn stops(&self, port: &str) -> Vec<[f32; 2]>;
     /// The picture that a port names, if there is one.
     fn picture(&self, port: &str) -> Option<&Picture>;
+    /// Whether two inputs are the output of the same node, so that they move together.
+    fn same(&self, first: &str, second: &str) -> bool;
+    /// How many components the input has, as the node sees it.
+    fn components(&self, port: &str) -> usize;
+    /// What values the input can have.
+    fn reach(&self, port: &str) -> Reach;
 }
 
 /// The node's class rule.
 pub type ClassRule = fn(&dyn InputView) -> Behaviour;
+
+/// What values the node's output can have, from those of its inputs; of a noise, those within four
+/// standard deviations of its mean.
+pub type ReachRule = fn(&dyn InputView) -> Reach;
 
 /// Everything that is known of a node type but its lowering.
 #[derive(Clone, Copy, Debug)]
@@ -317,6 +335,8 @@ pub struct NodeSpec {
     pub inputs: &'static [PortSpec],
     /// The type of `out`.
     pub output: OutputType,
+    /// How it acts on what values signals can have.
+    pub reach: ReachRule,
     /// How it acts on classes.
     pub class: ClassRule,
     /// A small JSON graph, with the node named as the type is; compiled by the tests.

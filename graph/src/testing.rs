@@ -2,7 +2,7 @@
 
 use crate::{
     Behaviour, Category, Default, Doc, InputView, NodeSpec, OutputType, PortSpec, PortType, Range,
-    Type,
+    Reach, Type,
 };
 
 const NO_DOC: Doc = Doc {
@@ -37,6 +37,7 @@ const fn spec(
         doc: NO_DOC,
         inputs,
         output,
+        reach: |_| Reach::ANY,
         class,
         example: "{}",
     }

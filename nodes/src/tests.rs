@@ -13,8 +13,8 @@ use mipless_codegen::cpu::{Footprint, eval_program};
 use mipless_codegen::ir::Program;
 use mipless_codegen::{Bundle, Lower, Method, NodeDef, Options, compile};
 use mipless_graph::{
-    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, Picture, Type,
-    check, load,
+    Behaviour, Category, CheckOptions, Default, Doc, Node, NodeSpec, OutputType, Picture, Reach,
+    Type, check, load,
 };
 use serde_json::{Value, json};
 
@@ -38,6 +38,7 @@ static GAUSSIAN: NodeSpec = NodeSpec {
         number("spread", 1.0, "Its σ."),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| inputs.reach("pivot") + inputs.reach("spread") * Reach::of(-5.0, 5.0),
     class: |_| Behaviour::Gaussian { deviation: 0.0 },
     example: "",
 };

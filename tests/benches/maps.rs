@@ -55,6 +55,7 @@ static WAVES: NodeSpec = NodeSpec {
         .uniform(),
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| mipless_graph::Reach::ANY,
     class: |_| Behaviour::Function,
     example: "",
 };

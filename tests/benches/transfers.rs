@@ -84,6 +84,7 @@ static TABLE: NodeSpec = NodeSpec {
         .uniform(),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| mipless_graph::Reach::ANY,
     class: |_| Behaviour::Function,
     example: "",
 };

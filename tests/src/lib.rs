@@ -10,6 +10,9 @@
 //! | `properties` | random graphs, nodes with any input set, and mutilated documents |
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
 //! | `field` | graphs as strangers write them are filtered, and nowhere worse than a point |
+//! | `bounds` | nodes with two bounds, in any order, given in any way |
+//! | `reach` | the values that the check says signals can have, and divisors that may be 0 |
+//! | `names` | whatever things are called, every target compiles |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `tidy` | the order of the house: arrows, generated files, names |
 //! | `book` | the pages of the nodes and their pictures |

@@ -35,6 +35,10 @@ pub const FAR_FIELD: f64 = 0.02;
 /// is measured is at most the first times it, and it is at most the second times what is measured.
 pub const PREDICTED: [f64; 2] = [1.25, 4.0];
 
+/// The root mean square error of one step or ramp of a noise over a footprint of an eighth of its
+/// wavelength: what filtering the source leaves, without any error of the bounds.
+pub const BOUNDED: f64 = 0.025;
+
 /// What filtering the sources themselves is off by, and the samples of the truth: no prediction has
 /// it.
 pub const SOURCE: f64 = 0.01;

@@ -115,10 +115,10 @@ impl<'b> Piecewise<'b> {
         Self::straight(low, 0.0, knots)
     }
 
-    /// 0 below `low`, 1 above `high`, cubic between (a step where they are equal).
+    /// 0 below `low`, 1 above `high`, cubic between; a step at `high` where they are equal or swapped.
     pub fn smoothstep(low: Float<'b>, high: Float<'b>) -> Self {
         let [zero, one] = [0.0, 1.0].map(|y| low.literal(y));
-        Self::ramp(&[(low, zero), (high, one)], Shape::Smooth)
+        Self::ramp(&[(low.min(high), zero), (high, one)], Shape::Smooth)
     }
 
     /// `a·T + c`.

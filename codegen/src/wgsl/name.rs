@@ -63,6 +63,31 @@ pub(super) fn camel(identifier: &str) -> String {
     name
 }
 
+/// What the texture's function and the entry points call their arguments and values: a function of
+/// that name could not be called where it stands for something else.
+const LOCALS: &str = "footprint position parameters outputs index first id uv xyz pixels";
+
+/// Address spaces, access modes and built-in values, which a declaration of the module hides.
+const ENUMERANTS: &str = "
+    function handle private read read_write storage uniform workgroup write clip_distances
+    frag_depth front_facing global_invocation_id instance_index local_invocation_id
+    local_invocation_index num_workgroups position sample_index sample_mask subgroup_invocation_id
+    subgroup_size vertex_index workgroup_id bgra8unorm r32float r32sint r32uint rg32float rg32sint
+    rg32uint rgba16float rgba16sint rgba16uint rgba32float rgba32sint rgba32uint rgba8sint rgba8snorm
+    rgba8uint rgba8unorm linear perspective flat center centroid sample first either";
+
+/// The name of a function of the module, from an identifier.
+pub(super) fn callable(identifier: String) -> String {
+    let mut taken = LOCALS
+        .split_whitespace()
+        .chain(ENUMERANTS.split_whitespace());
+    if taken.any(|word| word == identifier) {
+        identifier + "_value"
+    } else {
+        identifier
+    }
+}
+
 /// The names taken in a scope, as hashes: a name whose hash is another's counts as taken.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Scope {

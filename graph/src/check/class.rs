@@ -5,7 +5,7 @@ use super::closure::{
     together,
 };
 use super::{Correlation, Signal, Sources};
-use crate::{Behaviour, Graph, Node, NodeId};
+use crate::{Behaviour, Graph, Node, NodeId, Reach};
 
 /// The statistics class of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,6 +150,7 @@ pub(super) enum Reason {
     FunctionOfGaussians,
     TooManyGaussians,
     Rough(&'static str),
+    NoMoments(&'static str),
     FunctionOfPattern(&'static str),
     MomentsIn(&'static str),
     UnknownIn(&'static str),
@@ -208,6 +209,7 @@ impl Reason {
             Self::TooManyGaussians => format!(
                 "`{name}` is a non-linear function of more than two Gaussians: closed by its moments"
             ),
+            Self::NoMoments(reason) => format!("`{name}` has no moments: {reason}"),
             Self::Rough(place) => format!("`{name}` {place}"),
             Self::FunctionOfPattern(port) => format!(
                 "`{port}` of `{name}`, {}, is a pattern, whose values are far from Gaussian: closed \
@@ -314,6 +316,8 @@ pub(super) fn signal(
         decided_by,
         entries,
         space: false,
+        reach: Reach::ANY,
+        follows: false,
     }
 }
 
@@ -364,6 +368,14 @@ fn outcome(id: NodeId, node: &Node, behaviour: Behaviour, incoming: &[Incoming])
         Behaviour::Product if incoming.len() == 1 => linear(id, components, incoming),
         Behaviour::Product => function(incoming, PRODUCT_DEVIATION),
         Behaviour::Function => function(incoming, FUNCTION_DEVIATION),
+        Behaviour::NoMoments { reason, .. } => {
+            let closed = function(incoming, FUNCTION_DEVIATION);
+            let class = Class::Moments { deviation: 0.5 };
+            // Nothing bounds the error of what has no mean; half of the range is none at all.
+            Outcome::new(class, Reason::NoMoments(reason))
+                .by(closed.decided_by)
+                .error(closed.error.hypot(0.5))
+        }
         Behaviour::Rough { error, place } => {
             let deviation = FUNCTION_DEVIATION;
             let closed = function(incoming, deviation);

@@ -5,7 +5,7 @@ use crate::port::any;
 use crate::transfer::arc;
 use mipless_codegen::moments::{LinearWave, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach};
 use std::f32::consts::{PI, TAU};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -27,6 +27,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[any("iny", 0.0, "Up."), any("inx", 1.0, "Across.")],
     output: OutputType::Widest,
+    reach: |_| Reach::of(-PI, PI),
     class: |inputs| {
         if inputs.varies("iny") && inputs.varies("inx") {
             Behaviour::Rough {

@@ -5,7 +5,7 @@ use crate::port::{any, number};
 use mipless_codegen::moments::{Piecewise, Polynomial, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Range,
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Range, Reach,
 };
 
 /// What is blended, over what, and how much of the result is taken.
@@ -68,6 +68,7 @@ macro_rules! modes {
                 },
                 inputs: LAYERS,
                 output: OutputType::Widest,
+                reach: |_| Reach::ANY,
                 class: $class,
                 example: modes!(@ $node $($before => $layers)?),
             };

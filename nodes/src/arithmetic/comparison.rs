@@ -46,6 +46,7 @@ macro_rules! comparisons {
                 },
                 inputs: CHOICE,
                 output: OutputType::Widest,
+                reach: |inputs| inputs.reach("in1").hull(inputs.reach("in2")),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},

@@ -28,6 +28,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("in2", 1.0, "The divisor; 0 is refused.").range(Range::soft(0.1, 4.0).nonzero()),
     ],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in1") / inputs.reach("in2"),
     class,
     example: example! { "divide", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },

@@ -30,6 +30,7 @@ macro_rules! extrema {
                 },
                 inputs: OPERANDS,
                 output: OutputType::Widest,
+                reach: |inputs| inputs.reach("in1").$node(inputs.reach("in2")),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },

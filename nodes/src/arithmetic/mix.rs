@@ -3,7 +3,9 @@
 use crate::componentwise::binary;
 use crate::port::{any, number};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "mix",
@@ -25,6 +27,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         number("mix", 0.0, "The mask.").range(Range::soft(0.0, 1.0)),
     ],
     output: OutputType::Widest,
+    reach: |inputs| Reach::mixed(inputs.reach("bg"), inputs.reach("fg"), inputs.reach("mix")),
     class,
     example: example! { "mix", r##"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },

@@ -3,7 +3,7 @@
 use crate::componentwise::{binary, product};
 use crate::port::any;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Interval, Node, NodeSpec, OutputType, Range};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "multiply",
@@ -25,6 +25,14 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("in2", 1.0, "The second operand.").range(Range::soft(-1.0, 1.0)),
     ],
     output: OutputType::Widest,
+    reach: |inputs| {
+        let [x, y] = ["in1", "in2"].map(|port| inputs.reach(port));
+        if inputs.same("in1", "in2") {
+            x.map(Interval::abs) * x.map(Interval::abs)
+        } else {
+            x * y
+        }
+    },
     class: |_| Behaviour::Product,
     example: example! { "multiply", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },

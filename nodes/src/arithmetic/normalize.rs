@@ -3,7 +3,7 @@
 use crate::arithmetic::vector::unit;
 use crate::port::any;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "normalize",
@@ -23,6 +23,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[any("in", 1.0, "The vector.")],
     output: OutputType::Whole,
+    reach: |_| Reach::of(-1.0, 1.0),
     class: |inputs| {
         if inputs.varies("in") {
             Behaviour::Rough {

@@ -4,7 +4,7 @@ use crate::componentwise::{binary, composed, transfer};
 use crate::port::{any, number};
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
 
 macro_rules! extrema {
     ($($node:ident {
@@ -41,6 +41,7 @@ macro_rules! extrema {
                         .range(Range::hard(0.0, f32::MAX).with_soft(0.0, 1.0)),
                 ],
                 output: OutputType::Widest,
+                reach: |_| Reach::ANY,
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},

@@ -10,6 +10,7 @@ macro_rules! sums {
         summary: $summary:literal,
         computes: $computes:literal,
         statistics: $statistics:literal,
+        sign: $sign:tt,
         rule: $rule:expr,
     })*) => {$(
         pub(crate) const fn $node() -> NodeDef {
@@ -28,6 +29,7 @@ macro_rules! sums {
                 },
                 inputs: OPERANDS,
                 output: OutputType::Widest,
+                reach: |inputs| inputs.reach("in1") $sign inputs.reach("in2"),
                 class: |_| Behaviour::Linear,
                 example: example! { stringify!($node), concat!(r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },
@@ -48,6 +50,7 @@ sums! {
         computes: "out = in1 + in2, for each component.",
         statistics: "Exact for any distribution: means and coefficients add, so Var(out) = Var(in1) + \
             Var(in2) + 2 cov(in1, in2), with the covariance of what both inputs share.",
+        sign: +,
         rule: |_, x, y| x + y,
     }
     subtract {
@@ -56,6 +59,7 @@ sums! {
         computes: "out = in1 − in2, for each component.",
         statistics: "Exact for any distribution: coefficients subtract, so Var(out) = Var(in1) + Var(in2) \
             − 2 cov(in1, in2); the difference of a signal with itself is 0 without spread.",
+        sign: -,
         rule: |_, x, y| x - y,
     }
 }

@@ -3,7 +3,7 @@
 use crate::port::{any, number};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "switch",
@@ -35,6 +35,11 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         number("which", 0.0, "The number that chooses.").range(Range::soft(0.0, 9.0)),
     ],
     output: OutputType::Widest,
+    reach: |inputs| {
+        let choices = SPEC.inputs.iter().filter(|port| port.name != "which");
+        let reaches = choices.map(|port| inputs.reach(port.name));
+        reaches.reduce(Reach::hull).unwrap_or(Reach::ANY)
+    },
     class: |_| Behaviour::Function,
     example: example! { "switch", r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},

@@ -5,7 +5,7 @@ use crate::port::any;
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Piecewise, Polynomial, RealPower};
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 macro_rules! lengths {
     ($($node:ident {
@@ -35,6 +35,7 @@ macro_rules! lengths {
                 },
                 inputs: $inputs,
                 output: OutputType::Exactly(Type::Float),
+                reach: |_| Reach::of(0.0, f32::INFINITY),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "uv": {"type": "texcoord"},

@@ -4,7 +4,7 @@ use crate::componentwise::{composed, exposed, product, total};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Reach, Type,
 };
 
 macro_rules! products {
@@ -37,6 +37,7 @@ macro_rules! products {
                     operand("in2", $operands, "The second operand."),
                 ],
                 output: OutputType::Exactly($output),
+                reach: |_| Reach::ANY,
                 class: |_| Behaviour::Product,
                 example: example! { stringify!($node), concat!(r#"
     "uv": {"type": "texcoord"},

@@ -40,6 +40,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::surface("Where it is: the surface's own coordinates."),
     ],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in"),
     class,
     example: example! { "blur", r#"
     "wall": { "type": "brick", "inputs": { "bond": "basket", "columns": 3, "rows": 6 } },

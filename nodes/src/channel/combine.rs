@@ -2,7 +2,7 @@
 
 use crate::port::number;
 use mipless_codegen::NodeDef;
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, PortSpec, Type};
+use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, PortSpec, Reach, Type};
 
 macro_rules! combinations {
     ($($node:ident -> $ty:ident {
@@ -30,6 +30,10 @@ macro_rules! combinations {
                 },
                 inputs: $inputs,
                 output: OutputType::Exactly(Type::$ty),
+                reach: |inputs| {
+                    let ports = SPEC.inputs.iter();
+                    Reach::combined(&ports.map(|port| inputs.reach(port.name)).collect::<Vec<_>>())
+                },
                 class: |_| Behaviour::Linear,
                 example: example! { stringify!($node), $example },
             };

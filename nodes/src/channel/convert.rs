@@ -4,7 +4,7 @@ use crate::port;
 use crate::port::any;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Interval, Node, NodeSpec, OutputType, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "convert",
@@ -30,6 +30,22 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Named("to"),
+    reach: |inputs| {
+        let mut reach = inputs.reach("in");
+        for (i, component) in reach
+            .0
+            .iter_mut()
+            .enumerate()
+            .skip(inputs.components("in").max(1))
+        {
+            *component = match (inputs.components("in"), i, inputs.choice("to")) {
+                (_, 3, "color4") => Interval::point(1.0),
+                (1, _, _) => *component,
+                _ => Interval::point(0.0),
+            };
+        }
+        reach
+    },
     class: |_| Behaviour::Linear,
     example: example! { "convert", r#"
     "uv": {"type": "texcoord"},

@@ -28,6 +28,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in"),
     class: |_| Behaviour::Linear,
     example: example! { "dot", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },

@@ -24,6 +24,12 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .range(Range::hard(0.0, 3.0)),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| {
+        let last = inputs.components("in") - 1;
+        inputs
+            .reach("in")
+            .component(last.min(inputs.number("index") as usize))
+    },
     class: |_| Behaviour::Linear,
     example: example! { "extract", r#"
     "uv": { "type": "texcoord" },

@@ -5,7 +5,9 @@ use crate::port::number;
 use mipless_codegen::ir::{Float, Sym2, Vec2, dot};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, Over, Widened};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "heighttonormal",
@@ -49,6 +51,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::surface("The coordinates that the normal's axes follow."),
     ],
     output: OutputType::Exactly(Type::Vector3),
+    reach: |_| Reach::of(-1.0, 1.0),
     class,
     example: example! { "heighttonormal", r#"
     "hills": { "type": "fractal2d", "inputs": { "frequency": 5 } },

@@ -5,7 +5,8 @@ use crate::port::number;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
+    Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -48,6 +49,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .range(Range::soft(0.0, 2.0)),
     ],
     output: OutputType::Exactly(Type::Vector3),
+    reach: |_| Reach::of(-1.0, 1.0),
     class: |inputs| {
         if inputs.varies("in") || inputs.varies("scale") {
             Behaviour::Rough {

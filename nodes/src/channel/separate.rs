@@ -4,7 +4,7 @@ use crate::port;
 use crate::port::{any, exactly};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 macro_rules! separations {
     ($($node:ident {
@@ -32,6 +32,17 @@ macro_rules! separations {
                     port::choice("output", &[$first $(, $more)*], $first, "Which component `out` is."),
                 ],
                 output: OutputType::Exactly(Type::Float),
+                reach: |inputs| {
+                    let names = [$first $(, $more)*];
+                    let place = names.iter().position(|name| *name == inputs.choice("output"));
+                    // The names are those of a colour, then those of a vector.
+                    let each = if names.len() == 2 { 2 } else { names.len() / 2 };
+                    let index = place.unwrap_or_default() % each;
+                    match inputs.components("in") {
+                        count if count == 1 || index < count => inputs.reach("in").component(index),
+                        _ => Reach::point(if index == 3 { 1.0 } else { 0.0 }),
+                    }
+                },
                 class: |_| Behaviour::Linear,
                 example: $example,
             };

@@ -4,7 +4,7 @@ use crate::componentwise::{composed, exposed, product, quotient};
 use crate::port::exactly;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 macro_rules! operations {
     ($($node:ident {
@@ -31,6 +31,7 @@ macro_rules! operations {
                 },
                 inputs: &[exactly(Type::Color4, "in", 0.0, "The colour and its alpha.")],
                 output: OutputType::Exactly(Type::Color4),
+                reach: |_| Reach::ANY,
                 class: |_| Behaviour::Product,
                 example: example! { stringify!($node), concat!(r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},

@@ -4,7 +4,7 @@ use crate::componentwise::{exposed, transfer};
 use crate::port::number;
 use mipless_codegen::moments::{Piecewise, Shape, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "blackbody",
@@ -30,6 +30,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .unit("kelvin")
         .range(Range::soft(1667.0, 25000.0))],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "blackbody", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "amplitude": 4000, "pivot": 5000}},

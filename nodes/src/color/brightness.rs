@@ -3,7 +3,9 @@
 use crate::componentwise::unary;
 use crate::port::{any, number};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "brightness",
@@ -23,6 +25,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         number("contrast", 1.0, "The factor.").range(Range::soft(0.0, 4.0)),
     ],
     output: OutputType::Widest,
+    reach: |_| Reach::ANY,
     class,
     example: example! { "brightness", r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},

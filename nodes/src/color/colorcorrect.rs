@@ -8,7 +8,7 @@ use crate::port::{exactly, number};
 use crate::transfer::levels::curved;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 use std::f32::consts::LN_2;
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -46,6 +46,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .range(Range::soft(-4.0, 4.0)),
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "colorcorrect", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},

@@ -10,7 +10,7 @@ use mipless_codegen::ir::{Builder, Float, Module};
 use mipless_codegen::moments::{Domain, Signal};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Reach,
 };
 use shape::Shape;
 use std::sync::Arc;
@@ -86,6 +86,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         file: "file",
         named: "signature",
     },
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "colormap2d", r##"
     "folds": { "type": "spectralnoise2d", "inputs": { "frequency": 5, "pivot": 0.5 } },

@@ -63,6 +63,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Stops,
+    reach: |inputs| inputs.reach("stops"),
     class: |_| Behaviour::Function,
     example: example! { "colorramp", r##"
     "uv": { "type": "texcoord" },

@@ -4,7 +4,9 @@ use crate::componentwise::{composed, exposed, product};
 use crate::port::{exactly, number};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach, Type,
+};
 
 /// The two layers, and how much of the result is taken.
 pub(super) const IMAGES: &[PortSpec] = &[
@@ -69,6 +71,7 @@ macro_rules! operations {
                 },
                 inputs: IMAGES,
                 output: OutputType::Exactly(Type::Color4),
+                reach: |_| Reach::ANY,
                 class: |_| Behaviour::Product,
                 example: layered!($name),
             };

@@ -4,7 +4,7 @@ use crate::color::composite::{IMAGES, composite, composition, layered};
 use crate::componentwise::{product, quotient};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "disjointover",
@@ -25,6 +25,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: IMAGES,
     output: OutputType::Exactly(Type::Color4),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Product,
     example: layered!("disjointover"),
 };

@@ -5,7 +5,7 @@ use crate::componentwise::{exposed, numbers};
 use crate::port::exactly;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -39,6 +39,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "hsvadjust", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},

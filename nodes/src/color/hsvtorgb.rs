@@ -5,7 +5,7 @@ use crate::componentwise::{composed, exposed, product, transfer};
 use crate::port::exactly;
 use mipless_codegen::moments::{LinearWave, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "hsvtorgb",
@@ -33,6 +33,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         "Hue in turns, saturation and value.",
     )],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "hsvtorgb", r#"
     "noise": {"type": "noise2d", "inputs": {"frequency": 5, "pivot": 0.5}},

@@ -3,7 +3,7 @@
 use crate::componentwise::total;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -32,6 +32,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         "The colour.",
     )],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| Reach([inputs.reach("in").whole(3); 4]),
     class: |_| Behaviour::Linear,
     example: example! { "luminance", r##"
     "board": { "type": "checkerboard", "inputs": { "color1": "#c08a52" } },

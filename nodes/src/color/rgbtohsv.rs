@@ -4,7 +4,7 @@ use crate::color::hsv::to_hsv_function;
 use crate::componentwise::{composed, exposed};
 use crate::port::exactly;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "rgbtohsv",
@@ -34,6 +34,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         "The colour, linear Rec. 709.",
     )],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::ANY,
     class: |inputs| {
         if inputs.varies("in") {
             Behaviour::Rough {

@@ -7,7 +7,7 @@ use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Range, Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -36,6 +36,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::ANY,
     class,
     example: example! { "saturate", r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},

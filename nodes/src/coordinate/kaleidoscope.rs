@@ -6,7 +6,7 @@ use crate::pattern::angle::turns;
 use crate::port;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "kaleidoscope",
@@ -34,6 +34,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("sectors"),
     ],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "kaleidoscope" => "grain", r##"
     "tile": { "type": "repeat" },

@@ -5,7 +5,7 @@ use crate::coordinate::place::TEXCOORD;
 use crate::pattern::triangle::Triangle;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "mirror",
@@ -42,6 +42,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "mirror" => "grain", r##"
     "mirror": { "type": "mirror", "inputs": { "uvtiling": [3, 2] } },

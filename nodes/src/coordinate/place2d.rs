@@ -6,7 +6,9 @@ use crate::coordinate::rotate2d::rotated;
 use crate::port;
 use crate::port::number;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "place2d",
@@ -59,6 +61,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class,
     example: example! { "place2d" => "board", r#"
     "place2d": { "type": "place2d", "inputs": { "pivot": [0.5, 0.5], "scale": [0.5, 0.25], "rotate": 20 } },

@@ -3,7 +3,7 @@
 use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::polar;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "polar",
@@ -34,6 +34,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[TEXCOORD, CENTER],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "polar" => "rays", r##"
     "polar": { "type": "polar" },

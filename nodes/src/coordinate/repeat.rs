@@ -6,7 +6,9 @@ use crate::pattern::separable::phase;
 use crate::port;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "repeat",
@@ -40,6 +42,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .unit("tiles per uv"),
     ],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class,
     example: example! { "repeat" => "disc", r##"
     "repeat": { "type": "repeat", "inputs": { "uvtiling": [3, 3] } },

@@ -6,7 +6,9 @@ use crate::port::number;
 use mipless_codegen::ir::{Float, Scalar, SharedFunction, Vec2};
 use mipless_codegen::moments::{Signal, Sine};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "rotate2d",
@@ -36,6 +38,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("degrees"),
     ],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class,
     example: example! { "rotate2d", r#"
     "uv": { "type": "texcoord" },

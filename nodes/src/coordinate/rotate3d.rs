@@ -6,7 +6,7 @@ use crate::port::{exactly, number};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Type,
+    Range, Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -42,6 +42,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(-1.0, 1.0)),
     ],
     output: OutputType::Exactly(Type::Vector3),
+    reach: |_| Reach::ANY,
     class,
     example: example! { "rotate3d" => "grain", r#"
     "place": { "type": "position" },

@@ -5,7 +5,7 @@ use crate::coordinate::place::{CENTER, TEXCOORD, centred};
 use crate::pattern::angle::swirled;
 use crate::port::number;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "swirl",
@@ -39,6 +39,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "swirl" => "bands", r##"
     "swirl": { "type": "swirl", "inputs": { "amount": 240 } },

@@ -5,7 +5,9 @@ use crate::coordinate::place::TEXCOORD;
 use crate::port;
 use crate::port::number;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "warp",
@@ -41,6 +43,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class,
     example: example! { "warp" => "bands", r##"
     "swell": { "type": "noise2d", "inputs": { "frequency": 3, "seed": 4 } },

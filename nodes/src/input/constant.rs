@@ -18,6 +18,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[any("value", 0.0, "The value.").uniform()],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("value"),
     class: |_| Behaviour::Constant,
     example: example! { "constant", r##"
     "constant": { "type": "constant", "inputs": { "value": "#c08a52" } }

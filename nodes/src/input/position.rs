@@ -2,7 +2,7 @@
 
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "position",
@@ -31,6 +31,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         "The space of the coordinates: the one that the shader’s caller passes.",
     )],
     output: OutputType::Exactly(Type::Vector3),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Position,
     example: example! { "position", r#"
     "position": { "type": "position" }

@@ -1,7 +1,7 @@
 //! The texture coordinates of the surface.
 
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "texcoord",
@@ -24,6 +24,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[],
     output: OutputType::Exactly(Type::Vector2),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Position,
     example: example! { "texcoord", r#"
     "texcoord": { "type": "texcoord" }

@@ -17,7 +17,7 @@ use mipless_codegen::ir::{Float, Vec2};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, linear_from_srgb,
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, linear_from_srgb,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -77,6 +77,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         COLORSPACE,
     ],
     output: OutputType::Named("signature"),
+    reach: |_| Reach::ANY,
     class,
     example: r#"{ "version": 1, "name": "granite_floor",
         "nodes": { "byexample": { "type": "byexample", "inputs": { "file": "images/granite.png", "uvtiling": [2, 2], "seed": 3 } } },

@@ -4,7 +4,9 @@ use crate::noise::cell;
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "cellnoise2d",
@@ -31,6 +33,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[TEXCOORD, FREQUENCY, SEED, PERIOD],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |_| Behaviour::Random { deviation: 0.058 },
     example: r#"{ "version": 1, "name": "tiles",
         "nodes": { "cellnoise2d": { "type": "cellnoise2d", "inputs": { "frequency": 8 } } },

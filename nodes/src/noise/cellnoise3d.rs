@@ -4,7 +4,7 @@ use crate::noise::cell::space;
 use crate::noise::cellnoise2d::PERIOD;
 use crate::noise::source::{FREQUENCY, POSITION, SEED, place};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "cellnoise3d",
@@ -41,6 +41,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         },
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |_| Behaviour::Random { deviation: 0.058 },
     example: r#"{
   "version": 1,

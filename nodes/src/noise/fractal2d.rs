@@ -2,7 +2,9 @@
 
 use crate::noise::noise2d::{deviation, summed};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
-use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD};
+use crate::noise::source::{
+    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, diminished, practical,
+};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Type};
 
@@ -28,6 +30,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| practical(inputs, diminished(inputs)),
     class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "smoke",
         "nodes": { "fractal2d": { "type": "fractal2d", "inputs": { "frequency": 4, "octaves": 5, "pivot": 0.5 } } },

@@ -2,7 +2,9 @@
 
 use crate::noise::noise3d::{deviation, summed};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
-use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED};
+use crate::noise::source::{
+    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, diminished, practical,
+};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Type};
 
@@ -28,6 +30,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         POSITION, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| practical(inputs, diminished(inputs)),
     class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "granite",
         "nodes": { "fractal3d": { "type": "fractal3d", "inputs": { "frequency": 4, "octaves": 4, "pivot": 0.5, "kernel": "quintic", "period": 4 } } },

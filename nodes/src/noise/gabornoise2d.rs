@@ -2,7 +2,7 @@
 
 use crate::coordinate::rotate2d::turn;
 use crate::noise::gabor::{self, Gabor};
-use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD, shaped};
+use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD, practical, shaped};
 use crate::port;
 use mipless_codegen::ir::Vec2;
 use mipless_codegen::moments::Signal;
@@ -58,6 +58,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         PERIOD,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| practical(inputs, 1.0),
     class: |inputs| Behaviour::Gaussian {
         deviation: deviation(inputs),
     },

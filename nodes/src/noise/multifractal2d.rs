@@ -6,7 +6,7 @@ use crate::noise::source::{FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, pos
 use crate::port;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 /// max |CDF − Φ| of three octaves with the default ports.
 const DEVIATION: f32 = 0.025;
@@ -61,6 +61,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.0, 2.0)),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::ANY,
     class: |inputs| repeating(inputs, DEVIATION),
     example: r#"{ "version": 1, "name": "hills",
         "nodes": { "multifractal2d": { "type": "multifractal2d", "inputs": { "frequency": 4, "octaves": 5, "amplitude": 0.5 } } },

@@ -2,7 +2,8 @@
 
 use crate::noise::kernel::Kernel;
 use crate::noise::source::{
-    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, tiling,
+    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, practical,
+    tiling,
 };
 use crate::noise::sum::Octaves;
 use mipless_codegen::{Bundle, Lower};
@@ -65,6 +66,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| practical(inputs, 1.0),
     class: |inputs| tiling(inputs, 1.0, 1.0, deviation(inputs)),
     example: r#"{ "version": 1, "name": "clouds",
         "nodes": { "noise2d": { "type": "noise2d", "inputs": { "frequency": 8, "pivot": 0.5 } } },

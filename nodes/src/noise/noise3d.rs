@@ -2,7 +2,8 @@
 
 use crate::noise::noise2d::tiled_octave;
 use crate::noise::source::{
-    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, scaled, tiling,
+    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, practical, scaled,
+    tiling,
 };
 use crate::noise::sum::Octaves;
 use crate::noise::volume::{self, Kind};
@@ -55,6 +56,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[POSITION, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| practical(inputs, 1.0),
     class: |inputs| tiling(inputs, 1.0, 1.0, deviation(inputs)),
     example: r#"{ "version": 1, "name": "stone",
         "nodes": { "noise3d": { "type": "noise3d", "inputs": { "frequency": 6, "pivot": 0.5 } } },

@@ -10,7 +10,7 @@ use crate::port;
 use mipless_codegen::moments::{LinearWave, Sine, SquareWave};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Type,
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -64,6 +64,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         PERIOD,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| inputs.reach("pivot") + inputs.reach("amplitude") * Reach::of(-0.5, 0.5),
     class,
     example: r#"{ "version": 1, "name": "ridges",
         "nodes": { "phasornoise2d": { "type": "phasornoise2d", "inputs": { "frequency": 10, "orientation": 25, "profile": "triangle", "pivot": 0.5 } } },

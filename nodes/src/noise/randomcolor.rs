@@ -8,7 +8,8 @@ use crate::noise::source::SEED;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
+    Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -45,6 +46,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         SEED,
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Random { deviation: 0.22 },
     example: example! { "randomcolor", r#"
     "bricks": { "type": "brick", "inputs": { "output": "random", "columns": 5, "rows": 10 } },

@@ -7,7 +7,9 @@ use crate::noise::source::SEED;
 use crate::port;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "randomfloat",
@@ -44,6 +46,13 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         SEED,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| {
+        Reach::mixed(
+            inputs.reach("min"),
+            inputs.reach("max"),
+            Reach::of(0.0, 1.0),
+        )
+    },
     class: |_| Behaviour::Random { deviation: 0.058 },
     example: example! { "randomfloat", r#"
     "tiles": { "type": "brick", "inputs": { "output": "random", "bond": "spanish", "columns": 4 } },

@@ -7,7 +7,7 @@ use crate::noise::source::{FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, pos
 use crate::port;
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 /// max |CDF − Φ| of three octaves with the default ports.
 const DEVIATION: f32 = 0.07;
@@ -73,6 +73,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(0.0, 8.0)),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::ANY,
     class: |inputs| repeating(inputs, DEVIATION),
     example: r#"{ "version": 1, "name": "ridges",
         "nodes": { "ridged2d": { "type": "ridged2d", "inputs": { "frequency": 4, "octaves": 4, "amplitude": 0.7 } } },

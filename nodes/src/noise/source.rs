@@ -7,7 +7,7 @@ use super::sum::Octaves;
 use crate::port;
 use mipless_codegen::Lower;
 use mipless_codegen::moments::Signal;
-use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Type};
+use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Reach, Type};
 
 /// Where.
 pub(crate) const TEXCOORD: PortSpec = port::surface("Where the noise is evaluated.");
@@ -108,6 +108,18 @@ fn scaled_by_frequency<'b>(lower: &mut Lower<'_, 'b>, node: &Node, port: &str) -
 
 /// No noise leaves this many standard deviations in practice (once in 10⁶ points of a Gaussian).
 pub(crate) const EXTENT: f32 = 5.0;
+
+/// What a noise of standard deviation amplitude/4, or `layers` times that at most, is in practice.
+pub(crate) fn practical(inputs: &dyn InputView, layers: f32) -> Reach {
+    let extent = 0.25 * EXTENT * layers;
+    inputs.reach("pivot") + inputs.reach("amplitude") * Reach::of(-extent, extent)
+}
+
+/// Σ diminishᵏ over the octaves, the last of which may be a part of one.
+pub(crate) fn diminished(inputs: &dyn InputView) -> f32 {
+    let [octaves, diminish] = ["octaves", "diminish"].map(|port| inputs.number(port));
+    (0..octaves.ceil() as i32).map(|k| diminish.powi(k)).sum()
+}
 
 /// A sum of octaves of a lattice as the node's output: pivot + amplitude · `factor` · X, with |X| at
 /// most `extent`.

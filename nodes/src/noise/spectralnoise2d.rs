@@ -1,6 +1,6 @@
 //! `spectralnoise2d`: a sum of cosines with random phases.
 
-use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD, position, shaped};
+use crate::noise::source::{AMPLITUDE, PIVOT, SEED, TEXCOORD, position, practical, shaped};
 use crate::noise::spectral::{self, Density, FARTHEST, Spectrum};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
@@ -82,6 +82,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .range(Range::hard(1.0 / FARTHEST, FARTHEST)),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| practical(inputs, 1.0),
     class,
     example: r#"{ "version": 1, "name": "ripples",
         "nodes": { "spectralnoise2d": { "type": "spectralnoise2d", "inputs": { "frequency": 8, "bandwidth": 0.5, "pivot": 0.5 } } },

@@ -2,10 +2,12 @@
 
 use crate::noise::layers::{layers, published};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating};
-use crate::noise::source::{AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, position};
+use crate::noise::source::{
+    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, diminished, position,
+};
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 /// max |CDF − Φ| of three octaves.
 const DEVIATION: f32 = 0.06;
@@ -35,6 +37,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| {
+        let layers = Reach::of(0.0, 0.25 * EXTENT * diminished(inputs));
+        inputs.reach("pivot") + inputs.reach("amplitude") * layers
+    },
     class: |inputs| repeating(inputs, DEVIATION),
     example: r#"{ "version": 1, "name": "billows",
         "nodes": { "turbulence2d": { "type": "turbulence2d", "inputs": { "frequency": 4, "octaves": 4.5 } } },

@@ -11,7 +11,9 @@ use crate::noise::worley::{self, Output, Worley};
 use crate::port;
 use mipless_codegen::moments::{Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+};
 
 /// max |CDF − Φ| of the quadrupole lattice noise, and of octaves of it.
 const DEVIATION: f32 = 0.0046;
@@ -82,6 +84,13 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         SEED,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| {
+        if inputs.flag("clampoutput") {
+            inputs.reach("outmin").hull(inputs.reach("outmax"))
+        } else {
+            Reach::ANY
+        }
+    },
     class,
     example: r#"{ "version": 1, "name": "leather",
         "nodes": { "unifiednoise2d": { "type": "unifiednoise2d", "inputs": { "type": "worley", "freq": [8, 6], "outmin": 1, "outmax": 0 } } },

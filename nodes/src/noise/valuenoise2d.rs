@@ -3,7 +3,7 @@
 use crate::noise::kernel::Kernel;
 use crate::noise::noise2d::tiled_octave;
 use crate::noise::perlin::Kind;
-use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, tiling};
+use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, practical, tiling};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
@@ -53,6 +53,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         PERIOD,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| practical(inputs, 1.0),
     class: |inputs| tiling(inputs, 1.0, 1.0, DEVIATION),
     example: r#"{ "version": 1, "name": "patches",
         "nodes": { "valuenoise2d": { "type": "valuenoise2d", "inputs": { "frequency": 8 } } },

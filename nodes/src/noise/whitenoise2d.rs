@@ -9,7 +9,7 @@ use mipless_codegen::ir::{Sym2, Vec2};
 use mipless_codegen::moments::Normal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type,
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -48,6 +48,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         },
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |_| Behaviour::Random { deviation: 0.058 },
     example: r#"{ "version": 1, "name": "grain",
         "nodes": { "whitenoise2d": { "type": "whitenoise2d", "inputs": { "frequency": 300 } } },

@@ -5,7 +5,9 @@ use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
 use crate::noise::worley::{self, Output, Worley};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "worleynoise2d",
@@ -63,6 +65,11 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         PERIOD,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |inputs| match (inputs.choice("style"), inputs.choice("output")) {
+        ("solid", "F2-F1") => Reach::of(-1.0, 1.0),
+        ("solid", _) => Reach::of(0.0, 1.0),
+        _ => Reach::of(0.0, 2.0),
+    },
     class,
     example: r#"{ "version": 1, "name": "pebbles",
         "nodes": { "worleynoise2d": { "type": "worleynoise2d", "inputs": { "frequency": 6, "output": "F2-F1" } } },

@@ -10,7 +10,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::pattern::wall::Wall;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "brick",
@@ -80,6 +80,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .unit("rows"),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["columns", "rows", "row_offset", "mortar", "bevel"]),
     example: example! { "brick", r#"
     "brick": { "type": "brick", "inputs": { "bond": "flemish", "columns": 4, "rows": 12, "mortar": 0.12, "bevel": 0.1 } }

@@ -58,6 +58,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::surface("The coordinates."),
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |inputs| inputs.reach("color1").hull(inputs.reach("color2")),
     class: |inputs| pattern_unless(inputs, &["color1", "color2", "uvtiling", "uvoffset"]),
     example: example! { "checkerboard", r##"
     "checkerboard": { "type": "checkerboard", "inputs": { "color1": "#e8c27a", "color2": "#20303c", "uvtiling": [6, 6] } }

@@ -6,7 +6,7 @@ use crate::port;
 
 use crate::pattern::unless::pattern_unless;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach, Type};
 
 /// How soft.
 pub(crate) const EDGE: PortSpec = port::number(
@@ -44,6 +44,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         EDGE,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["center", "radius", "edge"]),
     example: example! { "circle", r##"
     "circle": { "type": "circle", "inputs": { "center": [0.5, 0.5], "radius": 0.35 } }

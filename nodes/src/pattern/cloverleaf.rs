@@ -6,7 +6,7 @@ use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -35,6 +35,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["center", "radius"]),
     example: example! { "cloverleaf", r##"
     "cloverleaf": { "type": "cloverleaf", "inputs": { "center": [0.5, 0.5], "radius": 0.4 } }

@@ -9,7 +9,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "crosshatch",
@@ -53,6 +53,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         STAGGERED,
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset", "thickness"]),
     example: example! { "crosshatch", r#"
     "crosshatch": { "type": "crosshatch", "inputs": { "uvtiling": [8, 8], "thickness": 0.2 } }

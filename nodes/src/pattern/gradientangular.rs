@@ -7,7 +7,7 @@ use crate::pattern::sawtooth::Sawtooth;
 use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "gradientangular",
@@ -38,6 +38,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("degrees"),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["center", "rotate"]),
     example: example! { "gradientangular", r##"
     "gradientangular": { "type": "gradientangular", "inputs": { "rotate": 40 } }

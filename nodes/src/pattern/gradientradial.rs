@@ -7,7 +7,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "gradientradial",
@@ -32,6 +32,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["center", "radius"]),
     example: example! { "gradientradial", r##"
     "gradientradial": { "type": "gradientradial", "inputs": { "radius": 0.6 } }

@@ -7,7 +7,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::ir::{Builder, Float};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "grid",
@@ -39,6 +39,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         STAGGERED,
     ],
     output: OutputType::Exactly(Type::Color3),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset", "thickness"]),
     example: example! { "grid", r#"
     "grid": { "type": "grid", "inputs": { "uvtiling": [6, 9], "thickness": 0.12, "staggered": true } }

@@ -6,7 +6,7 @@ use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "hexagon",
@@ -32,6 +32,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["center", "radius"]),
     example: example! { "hexagon", r##"
     "hexagon": { "type": "hexagon", "inputs": { "center": [0.5, 0.5], "radius": 0.35 } }

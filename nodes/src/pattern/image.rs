@@ -8,7 +8,7 @@ use crate::picture::read::Pyramid;
 use crate::port;
 use mipless_codegen::ir::Vec2;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "image",
@@ -79,6 +79,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         COLORSPACE,
     ],
     output: OutputType::Named("signature"),
+    reach: |_| Reach::ANY,
     class: |_| Behaviour::Pattern,
     example: r#"{ "version": 1, "name": "wall",
         "nodes": { "image": { "type": "image", "inputs": { "file": "images/granite.png", "uvtiling": [2, 2] } } },

@@ -7,7 +7,7 @@ use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 use std::f64::consts::PI;
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -39,6 +39,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::pair("point2", [0.75, 0.75], "The other end, from the centre.").unit("uv"),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["center", "radius", "point1", "point2"]),
     example: example! { "line", r##"
     "line": { "type": "line", "inputs": { "radius": 0.08, "point1": [0.2, 0.3], "point2": [0.8, 0.6] } }

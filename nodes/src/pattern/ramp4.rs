@@ -6,7 +6,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "ramp4",
@@ -33,6 +33,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::surface("The coordinates."),
     ],
     output: OutputType::Widest,
+    reach: |inputs| {
+        let corners = ["valuetl", "valuetr", "valuebl", "valuebr"].map(|port| inputs.reach(port));
+        corners.into_iter().fold(corners[0], Reach::hull)
+    },
     class: |inputs| pattern_unless(inputs, &["valuetl", "valuetr", "valuebl", "valuebr"]),
     example: example! { "ramp4", r##"
     "ramp4": { "type": "ramp4", "inputs": { "valuetl": "#20303c", "valuetr": "#e8c27a", "valuebl": "#7a4a2b", "valuebr": "#d8d4c8" } }

@@ -143,9 +143,13 @@ fn point_function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> Functi
     let seed = b.uint_param("seed");
     let offset = offset_parameter(b, fixed);
     let mut sum = b.float(0.5);
+    // At an edge two neighbours may both hold a place, or none, by the rounding of their sizes: the
+    // first that does has it, and the last brick has what is left.
+    let mut free = b.float(1.0);
+    let last = bond.bricks().len() - 1;
     for (i, brick) in bond.bricks().iter().enumerate() {
         let (centre, size) = in_cells(bond, brick, offset);
-        let mut inside = b.float(1.0);
+        let mut inside = free;
         // The copy of the brick whose centre is next.
         let cells = [0, 1].map(|k| {
             let from = place[k] - centre[k];
@@ -153,11 +157,14 @@ fn point_function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> Functi
             let from = from - rounded;
             // Half open, so that a place belongs to one brick.
             let within = from.ge(-0.5 * size[k]) & from.lt(0.5 * size[k]);
-            inside = within.select(inside, 0.0);
+            if i < last {
+                inside = within.select(inside, 0.0);
+            }
             cells[k] + rounded.to_int()
         });
         let which = b.uint((i as u32).wrapping_mul(BRICK));
         sum += inside * random(cells[0], row_hash(cells[1], which, seed));
+        free -= inside;
     }
     b.result("number", sum);
     b.finish(module)

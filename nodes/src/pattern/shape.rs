@@ -7,7 +7,7 @@ use crate::pattern::region::Outline;
 use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "shape",
@@ -55,6 +55,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         EDGE,
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["center", "radius", "rotate", "edge"]),
     example: example! { "shape", r##"
     "shape": { "type": "shape", "inputs": { "shape": "star", "sides": 7, "rotate": 10 } }

@@ -43,6 +43,7 @@ macro_rules! splits {
                     port::surface("The coordinates."),
                 ],
                 output: OutputType::Widest,
+                reach: |inputs| inputs.reach($from).hull(inputs.reach($to)),
                 class: |inputs| pattern_unless(inputs, &[$from, $to, "center"]),
                 example: concat!("{\n  \"version\": 1,\n  \"name\": \"", stringify!($node), "_example\",\n  \"nodes\": {\n    \"", stringify!($node), "\": { \"type\": \"", stringify!($node), "\", \"inputs\": { \"", $from, "\": \"#20303c\", \"", $to, "\": \"#e8c27a\" } }\n  },\n  \"outputs\": { \"out\": { \"node\": \"", stringify!($node), "\" } }\n}"),
             };

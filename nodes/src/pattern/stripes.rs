@@ -4,7 +4,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::moments::{Signal, SquareWave};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 use crate::componentwise::{product, sum, transfer};
 use crate::coordinate::rotate2d::turn;
@@ -43,6 +43,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .range(Range::hard(0.0, 1.0)),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["frequency", "rotate", "width"]),
     example: example! { "stripes", r#"
     "stripes": { "type": "stripes", "inputs": { "frequency": 12, "rotate": 30, "width": 0.35 } }

@@ -7,7 +7,7 @@ use crate::pattern::tiling::{Lattice, Tile, tiled};
 use crate::pattern::unless::pattern_unless;
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
-    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Type,
+    Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Reach, Type,
 };
 
 /// One row a node: what stands in a cell, of a radius and perhaps staggered, and how the pages say it.
@@ -64,6 +64,7 @@ macro_rules! figures {
                     STAGGERED,
                 ],
                 output: OutputType::Exactly(Type::Color3),
+                reach: |_| Reach::of(0.0, 1.0),
                 class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset"]),
                 example: concat!("{\n  \"version\": 1,\n  \"name\": \"", stringify!($node), "_example\",\n  \"nodes\": {\n    \"", stringify!($node), "\": { \"type\": \"", stringify!($node), "\", \"inputs\": { \"uvtiling\": [7, 7], \"size\": 0.8, \"staggered\": true } }\n  },\n  \"outputs\": { \"out\": { \"node\": \"", stringify!($node), "\" } }\n}"),
             };

@@ -8,7 +8,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::port;
 use mipless_codegen::moments::{LinearWave, Signal, Sine, SquareWave};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "wave",
@@ -56,6 +56,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .unit("cycles"),
     ],
     output: OutputType::Exactly(Type::Float),
+    reach: |_| Reach::of(0.0, 1.0),
     class: |inputs| pattern_unless(inputs, &["frequency", "rotate", "phase"]),
     example: example! { "wave", r#"
     "wind": { "type": "noise2d", "inputs": { "frequency": 4 } },

@@ -4,7 +4,7 @@ use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Interval, Node, NodeSpec, OutputType, Range};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "absval",
@@ -22,6 +22,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[any("in", 0.0, "The signal.").range(Range::soft(-1.0, 1.0))],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in").map(Interval::abs),
     class: |_| Behaviour::Function,
     example: example! { "absval", r#"
     "uv": { "type": "texcoord" },

@@ -15,6 +15,7 @@ macro_rules! arcs {
         computes: $computes:literal,
         statistics: $statistics:literal,
         accuracy: $accuracy:literal,
+        angle: $angle:expr,
         curve: |$b:ident| $curve:expr,
     })*) => {$(
         pub(crate) const fn $node() -> NodeDef {
@@ -32,6 +33,7 @@ macro_rules! arcs {
                 },
                 inputs: &[any("in", 0.0, "The number.").range(Range::soft(-1.0, 1.0))],
                 output: OutputType::Widest,
+                reach: |inputs| inputs.reach("in").monotone($angle),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "uv": {"type": "texcoord"},
@@ -64,6 +66,7 @@ arcs! {
             and closed forms where it is constant, of the difference from a line; the distortion as a \
             sum of squares. Approximate.",
         accuracy: "For a Gaussian input the mean is within 5e-4 and the standard deviation within 1e-3.",
+        angle: |x| x.clamp(-1.0, 1.0).acos(),
         curve: |b| Curve {
             function: cosine,
             kinks: vec![b.float(-1.0), b.float(1.0)],
@@ -80,6 +83,7 @@ arcs! {
             and closed forms where it is constant, of the difference from a line; the distortion as a \
             sum of squares. Approximate.",
         accuracy: "For a Gaussian input the mean is within 5e-4 and the standard deviation within 1e-3.",
+        angle: |x| x.clamp(-1.0, 1.0).asin(),
         curve: |b| Curve {
             function: sine,
             kinks: vec![b.float(-1.0), b.float(1.0)],
@@ -96,6 +100,7 @@ arcs! {
             squares. Approximate.",
         accuracy: "For a Gaussian input with a spread up to 0.5 the mean is within 1e-4, up to 1.5 \
             within 0.02, of values from −1.6 to 1.6.",
+        angle: f32::atan,
         curve: |_b| Curve::smooth(tangent, [-FRAC_PI_2, FRAC_PI_2]),
     }
 }

@@ -32,6 +32,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("high", 1.0, "The largest result."),
     ],
     output: OutputType::Widest,
+    reach: |inputs| (inputs.reach("in").min(inputs.reach("high"))).max(inputs.reach("low")),
     class: |_| Behaviour::Function,
     example: example! { "clamp", r#"
     "uv": { "type": "texcoord" },

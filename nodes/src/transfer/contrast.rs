@@ -23,6 +23,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("pivot", 0.5, "What stays."),
     ],
     output: OutputType::Widest,
+    reach: |inputs| {
+        let pivot = inputs.reach("pivot");
+        (inputs.reach("in") - pivot) * inputs.reach("amount") + pivot
+    },
     class,
     example: example! { "contrast", r#"
     "uv": {"type": "texcoord"},

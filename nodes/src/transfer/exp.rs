@@ -25,6 +25,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[any("in", 0.0, "The exponent.").range(Range::soft(-4.0, 4.0))],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in").monotone(f32::exp),
     class: |_| Behaviour::Function,
     example: example! { "exp", r#"
     "uv": {"type": "texcoord"},

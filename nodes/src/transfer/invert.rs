@@ -22,6 +22,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("amount", 1.0, "What the signal is taken from."),
     ],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("amount") - inputs.reach("in"),
     class: |_| Behaviour::Linear,
     example: example! { "invert", r#"
     "bands": { "type": "stripes", "inputs": { "frequency": 6 } },

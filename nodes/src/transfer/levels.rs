@@ -2,11 +2,11 @@
 
 use crate::componentwise::{composed, exposed, numbers, transfer};
 use crate::port::any;
-use crate::transfer::range::{DOCLAMP, interpolated, passed};
+use crate::transfer::range::{DOCLAMP, interpolated, passed, vanishing};
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Curve, Piecewise, RealPower, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "levels",
@@ -20,8 +20,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         statistics: "By ten-point Gauss–Legendre quadrature between the places where the function bends \
             and closed forms where it is constant, of the difference from a line; the distortion \
             as a sum of squares. Approximate. With a gamma of 1, as `range`, exact for a \
-            Gaussian. Of varying inlow, inhigh and gamma the means are used; outlow and outhigh \
-            multiply as `multiply` does.",
+            Gaussian. A varying inlow moves the signal, exactly; of varying inhigh − inlow and gamma \
+            the means are used; outlow and outhigh multiply as `multiply` does.",
         accuracy: "For a Gaussian input and a gamma from 0.4 to 2.5 the mean is within 3e-4 of the \
             output range, the standard deviation within 5e-4. Held by `nodes/src/tests/law.rs` \
             against dense numerical integration in f64.",
@@ -38,7 +38,14 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         DOCLAMP,
     ],
     output: OutputType::Widest,
-    class: |_| Behaviour::Function,
+    reach: |inputs| {
+        if inputs.flag("doclamp") {
+            inputs.reach("outlow").hull(inputs.reach("outhigh"))
+        } else {
+            Reach::ANY
+        }
+    },
+    class: |inputs| vanishing(inputs).unwrap_or(Behaviour::Function),
     example: example! { "levels", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
@@ -51,11 +58,12 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let limited = lower.flag(node, "doclamp");
     let input = lower.bundle(node, "in");
-    let [low, high, gamma] = ["inlow", "inhigh", "gamma"].map(|port| numbers(lower, node, port));
-    let [outlow, outhigh] = ["outlow", "outhigh"].map(|port| exposed(lower, node, port));
+    let gamma = numbers(lower, node, "gamma");
+    let ports = ["inlow", "inhigh", "outlow", "outhigh"];
+    let [low, high, outlow, outhigh] = ports.map(|port| exposed(lower, node, port));
     composed(lower, |lower| {
         let component = |i: usize| {
-            let share = passed(&input[i], low[i], high[i]);
+            let share = passed(&input[i], &low[i], &high[i]);
             let share = curved(lower, &share, gamma[i], limited);
             interpolated(lower, &outlow[i], &outhigh[i], &share)
         };

@@ -5,7 +5,7 @@ use crate::port::any;
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::Curve;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "ln",
@@ -25,7 +25,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[any("in", 1.0, "The number.").range(Range::soft(0.0, 4.0))],
     output: OutputType::Widest,
-    class: |_| Behaviour::Function,
+    reach: |inputs| inputs.reach("in").monotone(|x| x.max(LEAST).ln()),
+    class,
     example: example! { "ln", r#"
     "uv": {"type": "texcoord"},
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
@@ -35,6 +36,18 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     "ln": {"type": "ln", "inputs": {"in": {"node": "lifted"}}}
 "# },
 };
+
+/// The logarithm itself has no moments near 0.
+fn class(inputs: &dyn InputView) -> Behaviour {
+    if inputs.varies("in") && inputs.reach("in").0.iter().any(|x| x.low < LEAST) {
+        Behaviour::NoMoments {
+            port: "in",
+            reason: "what lies below 0.001 counts as that: the logarithm goes to −∞ there",
+        }
+    } else {
+        Behaviour::Function
+    }
+}
 
 /// What lies below counts as this.
 const LEAST: f32 = 1e-3;

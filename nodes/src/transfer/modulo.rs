@@ -4,7 +4,7 @@ use crate::componentwise::{binary, composed, product, quotient, transfer};
 use crate::port::any;
 use mipless_codegen::moments::LinearWave;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "modulo",
@@ -27,6 +27,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("in2", 1.0, "The divisor; 0 is refused.").range(Range::soft(0.1, 4.0).nonzero()),
     ],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in2").hull(Reach::point(0.0)),
     class: |_| Behaviour::Function,
     example: example! { "modulo", r#"
     "uv": {"type": "texcoord"},

@@ -4,7 +4,9 @@ use crate::componentwise::{binary, transfer};
 use crate::port::any;
 use mipless_codegen::moments::{Polynomial, RealPower, Transfer};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Interval, Node, NodeSpec, OutputType, Range, Reach,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "power",
@@ -32,7 +34,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("in2", 1.0, "The exponent.").range(Range::soft(0.0, 8.0)),
     ],
     output: OutputType::Widest,
-    class: |_| Behaviour::Function,
+    reach: powers,
+    class,
     example: example! { "power", r#"
     "uv": { "type": "texcoord" },
     "u": { "type": "extract", "inputs": { "in": { "node": "uv" }, "index": 0 } },
@@ -41,6 +44,38 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     "power": { "type": "power", "inputs": { "in1": { "node": "wave" }, "in2": 2 } }
 "# },
 };
+
+/// A negative power has neither mean nor variance where the base reaches 0.
+fn class(inputs: &dyn InputView) -> Behaviour {
+    let [base, exponent] = ["in1", "in2"].map(|port| inputs.reach(port).0);
+    let singular = |(base, exponent): (Interval, Interval)| base.low <= 0.0 && exponent.low < 0.0;
+    if inputs.varies("in1") && base.into_iter().zip(exponent).any(singular) {
+        Behaviour::NoMoments {
+            port: "in1",
+            reason: "a negative power has neither mean nor variance where the base reaches 0",
+        }
+    } else {
+        Behaviour::Function
+    }
+}
+
+/// Even whole powers are those of |x|; others act on max(x, 0), where they rise or fall everywhere.
+fn powers(inputs: &dyn InputView) -> Reach {
+    inputs
+        .reach("in1")
+        .zip(inputs.reach("in2"), |base, exponent| {
+            let number = (exponent.low == exponent.high).then_some(exponent.low);
+            match whole(number) {
+                Some(n) if n % 2 == 0 => base.abs().monotone(|x| x.powi(n as i32)),
+                Some(n) => base.monotone(|x| x.powi(n as i32)),
+                None => {
+                    let corners = [exponent.low, exponent.high]
+                        .map(|power| base.monotone(|x| x.max(0.0).powf(power)));
+                    corners[0].hull(corners[1])
+                }
+            }
+        })
+}
 
 /// The exponent as a whole number that the closed form takes.
 fn whole(exponent: Option<f32>) -> Option<u32> {

@@ -3,7 +3,7 @@
 use crate::componentwise::unary;
 use crate::port::{any, number};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "quantize",
@@ -26,6 +26,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .range(Range::hard(0.001, 1e6).with_soft(1.0, 32.0)),
     ],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in") + Reach::of(-1.0, 0.0) / inputs.reach("steps"),
     class: |_| Behaviour::Function,
     example: example! { "quantize", r#"
     "uv": {"type": "texcoord"},

@@ -1,12 +1,13 @@
 //! Affine map from a range to a range.
 
-use crate::componentwise::{numbers, product, transfer};
+use crate::componentwise::{difference, product, transfer};
 use crate::port;
 use crate::port::any;
-use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Piecewise, Reciprocal, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Reach,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "range",
@@ -19,8 +20,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             as 1e-6 wide.",
         statistics: "Without `doclamp`, linear and exact; varying outlow or outhigh multiply t as \
             `multiply` does. With it, the transfer min(max(t, 0), 1) in closed form, exact for a \
-            Gaussian input. Of inlow and inhigh the means are used: their own spread is ignored, \
-            and the class says so.",
+            Gaussian input. A varying inlow moves the signal, exactly; of inhigh − inlow the mean \
+            is used, and the class says so.",
         accuracy: "Without `doclamp`, exact to rounding. With it, the mean is within 1e-5 of the output \
             range for a Gaussian input. Held by `codegen/src/moments/tests.rs` against dense \
             numerical integration in f64.",
@@ -35,6 +36,14 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         DOCLAMP,
     ],
     output: OutputType::Widest,
+    reach: |inputs| {
+        let [low, high] = ["outlow", "outhigh"].map(|port| inputs.reach(port));
+        if inputs.flag("doclamp") {
+            return low.hull(high);
+        }
+        let [from, to] = ["inlow", "inhigh"].map(|port| inputs.reach(port));
+        Reach::mixed(low, high, (inputs.reach("in") - from) / (to - from))
+    },
     class,
     example: example! { "range", r#"
     "uv": { "type": "texcoord" },
@@ -47,6 +56,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 
 /// Limiting bends; varying bounds of the output multiply, and of the input count by their means.
 fn class(inputs: &dyn InputView) -> Behaviour {
+    if let Some(vanishing) = vanishing(inputs) {
+        return vanishing;
+    }
     let varies = |ports: &[&str]| ports.iter().any(|port| inputs.varies(port));
     if inputs.flag("doclamp") || varies(&["inlow", "inhigh"]) {
         Behaviour::Function
@@ -55,6 +67,21 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     } else {
         Behaviour::Linear
     }
+}
+
+/// Where the width of the range varies and may be 0, by which the signal is divided.
+pub(super) fn vanishing(inputs: &dyn InputView) -> Option<Behaviour> {
+    let varies = ["inlow", "inhigh"]
+        .into_iter()
+        .find(|port| inputs.varies(port))?;
+    if inputs.same("inlow", "inhigh") {
+        return None;
+    }
+    let width = inputs.reach("inhigh") - inputs.reach("inlow");
+    (width.0.iter().any(|width| width.contains(0.0))).then_some(Behaviour::NoMoments {
+        port: varies,
+        reason: "inhigh − inlow divides and may be 0, where a quotient has neither mean nor variance",
+    })
 }
 
 /// Whether the result stays within the range of the output.
@@ -67,10 +94,10 @@ pub(super) const DOCLAMP: PortSpec = port::flag(
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let limited = lower.flag(node, "doclamp");
-    let [input, outlow, outhigh] = ["in", "outlow", "outhigh"].map(|port| lower.bundle(node, port));
-    let [low, high] = ["inlow", "inhigh"].map(|port| numbers(lower, node, port));
+    let ports = ["in", "inlow", "inhigh", "outlow", "outhigh"];
+    let [input, low, high, outlow, outhigh] = ports.map(|port| lower.bundle(node, port));
     let component = |i: usize| {
-        let mut share = passed(&input[i], low[i], high[i]);
+        let mut share = passed(&input[i], &low[i], &high[i]);
         if limited {
             let b = lower.b();
             share = transfer(lower, &share, &Piecewise::clamp(b.float(0.0), b.float(1.0)));
@@ -80,9 +107,10 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     (0..input.len()).map(component).collect()
 }
 
-/// The share of the range that is passed, 0 at `low` and 1 at `high`.
-pub(super) fn passed<'b>(x: &Signal<'b>, low: Float<'b>, high: Float<'b>) -> Signal<'b> {
-    x.offset(-low) * Reciprocal.value(high - low)
+/// The share of the range that is passed, 0 at `low` and 1 at `high`; of the width of the range the
+/// mean is used.
+pub(super) fn passed<'b>(x: &Signal<'b>, low: &Signal<'b>, high: &Signal<'b>) -> Signal<'b> {
+    difference(x, low) * Reciprocal.value(difference(high, low).flat_mean())
 }
 
 /// low + (high − low) share.

@@ -31,6 +31,7 @@ macro_rules! roundings {
                 },
                 inputs: &[any("in", 0.0, "The signal.").range(Range::soft(-4.0, 4.0))],
                 output: OutputType::Widest,
+                reach: |inputs| inputs.reach("in").monotone(f32::$node),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "uv": {"type": "texcoord"},

@@ -5,7 +5,7 @@ use crate::port::{any, number};
 use mipless_codegen::NodeDef;
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::Curve;
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Range, Reach};
 
 macro_rules! curves {
     ($($node:ident {
@@ -44,6 +44,7 @@ macro_rules! curves {
                     number(stringify!($node), 0.5, $parameter).range(Range::hard(0.01, 0.99)),
                 ],
                 output: OutputType::Widest,
+                reach: |_| Reach::of(0.0, 1.0),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "uv": {"type": "texcoord"},

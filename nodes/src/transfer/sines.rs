@@ -4,7 +4,7 @@ use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::NodeDef;
 use mipless_codegen::moments::Sine;
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Range, Reach};
 use std::f32::consts::FRAC_PI_2;
 
 macro_rules! sines {
@@ -36,6 +36,7 @@ macro_rules! sines {
                 },
                 inputs: &[any("in", 0.0, "The angle.").range(Range::soft(-3.15, 3.15)).unit("radians")],
                 output: OutputType::Widest,
+                reach: |_| Reach::of(-1.0, 1.0),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), $example },
             };

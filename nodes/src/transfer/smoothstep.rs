@@ -1,10 +1,10 @@
 //! Cubic step between two bounds.
 
-use crate::componentwise::{ternary, transfer};
+use crate::componentwise::{difference, ternary, transfer};
 use crate::port::any;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "smoothstep",
@@ -16,8 +16,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             component; a step at high where the bounds are closer than 1e-6 or swapped.",
         statistics: "For a Gaussian input: the mean and its derivatives by the truncated moments of the \
             cubic, or by Gauss–Legendre quadrature where the cubic is narrower than 1.2 standard \
-            deviations; the distortion as a sum of squares over positive weights. Of low and \
-            high the means are used: their own spread is ignored.",
+            deviations; the distortion as a sum of squares over positive weights. Where low or high \
+            vary, it is the function of in − high; of high − low the mean is used.",
         accuracy: "For a Gaussian input the mean is within 1e-4, the remainder’s standard deviation \
             within 3e-3. Held by `codegen/src/moments/tests.rs` against dense numerical \
             integration in f64.",
@@ -29,6 +29,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("high", 1.0, "Where the rise ends."),
     ],
     output: OutputType::Widest,
+    reach: |_| Reach::of(0.0, 1.0),
     class: |_| Behaviour::Function,
     example: example! { "smoothstep", r#"
     "uv": { "type": "texcoord" },
@@ -41,7 +42,13 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     ternary(lower, node, ["in", "low", "high"], |lower, x, low, high| {
-        let smooth = Piecewise::smoothstep(low.flat_mean(), high.flat_mean());
-        transfer(lower, x, &smooth)
+        if low.is_certain() && high.is_certain() {
+            let smooth = Piecewise::smoothstep(low.flat_mean(), high.flat_mean());
+            return transfer(lower, x, &smooth);
+        }
+        // What the bounds share with the signal moves the rise; only its width is a number.
+        let width = difference(high, low).flat_mean();
+        let smooth = Piecewise::smoothstep(-width, width.literal(0.0));
+        transfer(lower, &difference(x, high), &smooth)
     })
 }

@@ -22,6 +22,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[any("in", 0.0, "The radicand.")],
     output: OutputType::Widest,
+    reach: |inputs| inputs.reach("in").monotone(|x| x.max(0.0).sqrt()),
     class: |_| Behaviour::Function,
     example: example! { "sqrt", r#"
     "uv": {"type": "texcoord"},

@@ -4,7 +4,7 @@ use crate::componentwise::{transfer, unary};
 use crate::port::{any, number};
 use mipless_codegen::moments::SquareWave;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "squarewave",
@@ -27,6 +27,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         number("width", 0.5, "The share of a unit that is 1.").range(Range::hard(0.0, 1.0)),
     ],
     output: OutputType::Widest,
+    reach: |_| Reach::of(0.0, 1.0),
     class: |_| Behaviour::Function,
     example: example! { "squarewave", r#"
     "uv": {"type": "texcoord"},

@@ -4,7 +4,7 @@ use crate::componentwise::{binary, difference, transfer};
 use crate::port::any;
 use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "step",
@@ -27,6 +27,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("edge", 0.0, "Where the result becomes 1.").range(Range::soft(-1.0, 1.0)),
     ],
     output: OutputType::Widest,
+    reach: |_| Reach::of(0.0, 1.0),
     class: |_| Behaviour::Function,
     example: example! { "step", r#"
     "uv": { "type": "texcoord" },

@@ -4,7 +4,9 @@ use crate::componentwise::{composed, quotient, transfer, unary};
 use crate::port::any;
 use mipless_codegen::moments::Sine;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach,
+};
 use std::f32::consts::FRAC_PI_2;
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -27,6 +29,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         .range(Range::soft(-1.5, 1.5))
         .unit("radians")],
     output: OutputType::Widest,
+    reach: |_| Reach::ANY,
     class,
     example: example! { "tan", r#"
     "tan": {"type": "tan", "inputs": {"in": 0.7}}

@@ -4,7 +4,7 @@ use crate::componentwise::{transfer, unary};
 use crate::port::any;
 use mipless_codegen::NodeDef;
 use mipless_codegen::moments::LinearWave;
-use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Range};
+use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Range, Reach};
 
 macro_rules! waves {
     ($($node:ident {
@@ -33,6 +33,7 @@ macro_rules! waves {
                 },
                 inputs: &[any("in", 0.0, "The signal.").range(Range::soft(-1.0, 1.0))],
                 output: OutputType::Widest,
+                reach: |_| Reach::of(0.0, 1.0),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "uv": {"type": "texcoord"},
