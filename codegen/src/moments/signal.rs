@@ -222,6 +222,17 @@ impl<'b> Signal<'b> {
         }
     }
 
+    /// `X / by` for a number that is known: a position keeps all its digits, which a product with the
+    /// rounded inverse of the number would not.
+    pub fn over(&self, by: f32) -> Self {
+        let (cell, mean) = position::divide((self.cell, self.mean), by);
+        Self {
+            cell,
+            mean,
+            ..self.scale(1.0 / by)
+        }
+    }
+
     /// `X + by` for a number without spread.
     pub fn offset(&self, by: impl Operand<'b, f32>) -> Self {
         let by = by.within(self.mean.builder());
