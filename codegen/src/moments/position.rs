@@ -29,6 +29,12 @@ fn whole<'b>(number: Float<'b>) -> (Int<'b>, Float<'b>) {
     (whole.to_int(), number - whole)
 }
 
+/// A number as its integer part and the rest in [0, 1], whatever its magnitude.
+pub(super) fn split<'b>(number: Float<'b>) -> (Int<'b>, Float<'b>) {
+    let whole = number.floor();
+    (whole.to_int(), number - whole)
+}
+
 /// Moves the integer part of `rest` to the cell, so that the rest lies in [0, 1).
 fn carry<'b>(cell: Int<'b>, rest: Float<'b>) -> (Int<'b>, Float<'b>) {
     let (carried, fraction) = whole(rest);
