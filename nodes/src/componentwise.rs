@@ -110,6 +110,12 @@ pub(crate) fn quotient<'b>(
         // A number over a number is rounded once.
         return Signal::constant(lower.b(), numerator / divisor);
     }
+    if let Some(divisor) = y.mean.as_constant().filter(|&y| y != 0.0)
+        && x.cell.is_some()
+        && is_number(y)
+    {
+        return x.over(divisor);
+    }
     let inverse = transfer(lower, y, &Reciprocal);
     product(lower, x, &inverse)
 }

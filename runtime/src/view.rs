@@ -46,42 +46,48 @@ impl Hit {
     /// The footprint: the whole part of the position apart from its fraction, so that the fraction
     /// keeps its digits far from the origin.
     ///
-    /// `None` where the whole part does not fit an i32, or where a number is not finite as f32.
+    /// `None` where a number is not finite as f32.
     pub fn footprint(&self) -> Option<Footprint> {
-        let cell = self.uv.map(f64::floor);
-        let fits = cell
-            .iter()
-            .all(|&c| c >= f64::from(i32::MIN) && c <= f64::from(i32::MAX));
+        let places = self.uv.map(split);
         let footprint = Footprint {
-            cell: cell.map(|c| c as i32),
-            uv: [(self.uv[0] - cell[0]) as f32, (self.uv[1] - cell[1]) as f32],
+            cell: places.map(|(cell, _)| cell),
+            uv: places.map(|(_, rest)| rest),
             du: self.du.map(|x| x as f32),
             dv: self.dv.map(|x| x as f32),
         };
-        let finite = footprint
-            .du
-            .iter()
-            .chain(&footprint.dv)
-            .all(|x| x.is_finite());
-        (fits && finite).then_some(footprint)
+        let Footprint { uv, du, dv, .. } = footprint;
+        let finite = [uv, du, dv].as_flattened().iter().all(|x| x.is_finite());
+        finite.then_some(footprint)
     }
-}
 
-impl Hit {
     /// The position in space, the whole part apart from its fraction.
     ///
-    /// `None` where the whole part does not fit an i32, or where a number is not finite as f32.
+    /// `None` where a number is not finite as f32.
     pub fn space(&self) -> Option<Position> {
-        let cell = self.position.map(f64::floor);
-        let fits = (cell.iter()).all(|&c| c >= f64::from(i32::MIN) && c <= f64::from(i32::MAX));
+        let places = self.position.map(split);
         let position = Position {
-            cell: cell.map(|c| c as i32),
-            xyz: [0, 1, 2].map(|i| (self.position[i] - cell[i]) as f32),
+            cell: places.map(|(cell, _)| cell),
+            xyz: places.map(|(_, rest)| rest),
             dx: self.dx.map(|x| x as f32),
             dy: self.dy.map(|x| x as f32),
         };
-        let finite = (position.dx.iter().chain(&position.dy)).all(|x| x.is_finite());
-        (fits && finite).then_some(position)
+        let Position { xyz, dx, dy, .. } = position;
+        let finite = [xyz, dx, dy].as_flattened().iter().all(|x| x.is_finite());
+        finite.then_some(position)
+    }
+}
+
+/// A coordinate as its whole part and the rest. What is so near to 0 that the rest would be rounded to
+/// 1, or so far away that an integer does not hold it, is the rest alone.
+fn split(x: f64) -> (i32, f32) {
+    let cell = x.floor();
+    let rest = (x - cell) as f32;
+    if rest < 1.0 && cell.abs() < f64::from(i32::MAX) {
+        (cell as i32, rest)
+    } else if x.abs() < 1.0 || cell.abs() >= f64::from(i32::MAX) {
+        (0, x as f32)
+    } else {
+        (cell as i32 + 1, 0.0)
     }
 }
 

@@ -2,15 +2,17 @@
 
 use crate::ir::{Builder, Float, FunctionRef, Module};
 
-/// The magnitude from which on a result has lost its meaning: what squares it overflows.
+/// The largest magnitude of a result: parameters may be as extreme as footprints.
 const LARGEST_RESULT: f32 = 1e38;
 
-/// A result, or 0 where it overflows: parameters may be as extreme as footprints.
+/// A result, limited to what a number can be told from infinity; 0 where it is no number.
 pub(super) fn guarded(value: Float<'_>) -> Float<'_> {
     if value.as_constant().is_some() {
         return value;
     }
-    value.abs().lt(LARGEST_RESULT).select(value, 0.0)
+    let beyond = value.ge(LARGEST_RESULT).select(LARGEST_RESULT, 0.0);
+    let beyond = value.le(-LARGEST_RESULT).select(-LARGEST_RESULT, beyond);
+    value.abs().lt(LARGEST_RESULT).select(value, beyond)
 }
 
 /// The names of a function's results.

@@ -6,6 +6,12 @@ use std::array;
 /// The largest change of texture coordinates per pixel that is told apart from an infinite one.
 const LARGEST_FOOTPRINT: f32 = 1e9;
 
+/// The farthest rest of a place: integers hold it.
+const FARTHEST: f32 = 1e9;
+
+/// Numbers beyond this magnitude are not told apart from infinity.
+const LARGEST: f32 = 3e38;
+
 /// A place in as many axes, and how it changes from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place<'b, const AXES: usize> {
@@ -63,7 +69,7 @@ impl<'b, const AXES: usize> Place<'b, AXES> {
     }
 
     /// With a footprint that is finite: one that is not is taken for the largest, whose filtered values
-    /// are the far field's.
+    /// are the far field's. A rest that is not finite is taken for 0.
     pub(super) fn finite(self) -> Self {
         let within = |x: Float<'b>| x.abs().lt(LARGEST_FOOTPRINT);
         let mut regular: Bool<'b> = self.cell[0].builder().literal(true);
@@ -83,7 +89,12 @@ impl<'b, const AXES: usize> Place<'b, AXES> {
         };
         Self {
             cell: self.cell,
-            fraction: self.fraction.map(|x| within(x).select(x, 0.0)),
+            fraction: (self.fraction).map(|x| {
+                x.abs()
+                    .lt(LARGEST)
+                    .select(x, 0.0)
+                    .clamp(-FARTHEST, FARTHEST)
+            }),
             right: far(self.right, 0),
             down: far(self.down, 1),
         }

@@ -18,7 +18,7 @@ mod read;
 mod split;
 
 use super::branch::Branch;
-use super::{Algebra, Mode, Signal};
+use super::{Algebra, Mode, Signal, position};
 use crate::ir::{Float, FunctionRef, Module, Numbers, Sym2, Vec2};
 use pack::Packing;
 use std::sync::{Arc, LazyLock};
@@ -180,7 +180,8 @@ impl<'b> Algebra<'b> {
     /// T(X, Y), whatever the covariance of X and Y is: means E[T], coefficients E[∂T] of both, and
     /// the rest of the variance into a fresh ε of each component.
     pub(crate) fn map(&mut self, [x, y]: [&Signal<'b>; 2], map: &Map) -> Vec<Signal<'b>> {
-        let [x, y] = &[x, y].map(|signal| map.phase(signal));
+        let [width, height] = map.domain.widths();
+        let [x, y] = &[map.phase(x, width), map.phase(y, height)];
         let mean = Vec2([x.mean, y.mean]);
         if !self.mode.spreads() || x.is_certain() && y.is_certain() {
             let values = self.b.call(&map.function, mean);
@@ -221,11 +222,12 @@ impl<'b> Algebra<'b> {
 }
 
 impl Map {
-    /// The signal with its mean as one number; of a position in a period of 1 the fraction alone,
-    /// which keeps its detail far from the origin.
-    fn phase<'b>(&self, signal: &Signal<'b>) -> Signal<'b> {
-        if self.domain.periodic && self.domain.widths() == [1.0; 2] {
+    /// The signal with its mean as one number; of a position what is left of whole periods, which
+    /// keeps its detail far from the origin.
+    fn phase<'b>(&self, signal: &Signal<'b>, period: f32) -> Signal<'b> {
+        if self.domain.periodic && signal.cell.is_some() {
             return Signal {
+                mean: position::modulo((signal.cell, signal.mean), period),
                 cell: None,
                 ..signal.clone()
             };

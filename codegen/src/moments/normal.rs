@@ -46,6 +46,16 @@ impl<'b> Normal<'b> {
         }
     }
 
+    /// At −z.
+    pub fn mirrored(&self) -> Self {
+        Self {
+            z: -self.z,
+            below: self.above,
+            above: self.below,
+            ..*self
+        }
+    }
+
     /// E[max(distance + σZ, 0)] = σ(zΦ(z) + φ(z)), where this is the normal at z = distance/σ.
     pub fn hinge(&self, distance: Float<'b>, sd: Float<'b>) -> Float<'b> {
         let near = sd * (self.z * self.below + self.density).max(0.0);

@@ -8,6 +8,7 @@
 mod distortion;
 mod ramp;
 mod segment;
+mod stretch;
 
 use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer, signal::UNBOUNDED};
 use crate::ir::{Builder, Float, Operand};
@@ -65,6 +66,8 @@ pub struct Piecewise<'b> {
     /// The bumps of the segments between neighbouring knots, monotone on top of the straight ones;
     /// empty where every segment is straight.
     pub bumps: Vec<Bump<'b>>,
+    /// Whether it is constant after the last knot, whatever the rounded sum of the slopes is.
+    pub level: bool,
 }
 
 impl<'b> Piecewise<'b> {
@@ -75,6 +78,15 @@ impl<'b> Piecewise<'b> {
             slope: slope.within(offset.builder()),
             knots,
             bumps: Vec::new(),
+            level: false,
+        }
+    }
+
+    /// The same, constant after the last knot.
+    fn levelled(self) -> Self {
+        Self {
+            level: true,
+            ..self
         }
     }
 
@@ -112,7 +124,7 @@ impl<'b> Piecewise<'b> {
     /// x limited to `[low, high]`; `low` where they are swapped, as by `max` after `min`.
     pub fn clamp(low: Float<'b>, high: Float<'b>) -> Self {
         let knots = vec![Knot::bend(low, 1.0), Knot::bend(low.max(high), -1.0)];
-        Self::straight(low, 0.0, knots)
+        Self::straight(low, 0.0, knots).levelled()
     }
 
     /// 0 below `low`, 1 above `high`, cubic between; a step at `high` where they are equal or swapped.
@@ -144,6 +156,8 @@ impl<'b> Piecewise<'b> {
         if !self.bumps.is_empty() {
             return out;
         }
+        let last = |knots: &[Knot<'b>]| knots.last().map(|knot| knot.at.value());
+        let before = last(&out.knots);
         out.knots.retain(|knot| match knot.at.as_constant() {
             Some(at) if at >= high => false,
             Some(at) if at <= low => {
@@ -153,6 +167,7 @@ impl<'b> Piecewise<'b> {
             }
             _ => true,
         });
+        out.level &= last(&out.knots) == before;
         out
     }
 
@@ -167,16 +182,10 @@ impl<'b> Piecewise<'b> {
         if self.slope.is_zero() {
             x = x.max(first.at - margin);
         }
-        let after = (self.knots.iter()).fold(self.slope, |slope, knot| slope + knot.bend);
-        if after.as_constant().is_some_and(|slope| slope.abs() < 1e-6) || self.is_ramp() {
+        if self.level {
             x = x.min(last.at + margin);
         }
         x
-    }
-
-    /// Whether bends are differences of neighbouring slopes from 0 to 0, whatever their values.
-    fn is_ramp(&self) -> bool {
-        self.slope.is_zero() && self.knots.len() > 1
     }
 
     fn segments(&self) -> impl Iterator<Item = Segment<'b>> {
@@ -203,30 +212,31 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
         let t = self.within(x.range);
         let m = t.limited(x.mean, x.sd * 8.0);
         let x = &Gaussian { mean: m, ..*x };
-        let inverse_variance = x.inverse_sd.square();
-        let zero = m.literal(0.0);
+        let normals: Vec<Normal<'b>> = (t.knots.iter())
+            .map(|knot| Normal::at(m - knot.at, x.inverse_sd))
+            .collect();
+        let lines = t.lines();
         // The mean and its derivatives by m.
-        let mut sums = [t.offset + t.slope * m, t.slope, zero, zero];
+        let mut sums = lines.moments(x, &t.knots, &normals);
         let mut add = |terms: [Float<'b>; 4]| {
             for (sum, term) in sums.iter_mut().zip(terms) {
                 *sum += term;
             }
         };
-        for &Knot { at, jump, bend } in &t.knots {
-            let n = Normal::at(m - at, x.inverse_sd);
-            let hinge = n.hinge(m - at, x.sd);
-            let density = n.density * x.inverse_sd;
+        for (&Knot { jump, .. }, n) in t.knots.iter().zip(&normals) {
             let steep = jump * x.inverse_sd;
+            // −z J φ/σ² and J (z² − 1) φ/σ³.
+            let bell = steep * x.inverse_sd * n.density;
             add([
-                jump * n.below + bend * hinge,
-                jump * density + bend * n.below,
-                // (B − J z/σ) φ/σ and (J(z² − 1)/σ − B z) φ/σ².
-                (bend - steep * n.z) * density,
-                (steep * (n.z.square() + -1.0) - bend * n.z) * (n.density * inverse_variance),
+                jump * n.below,
+                steep * n.density,
+                -n.z * bell,
+                (n.z.square() + -1.0) * bell * x.inverse_sd,
             ]);
         }
         t.segments().for_each(|segment| add(segment.moments(x)));
-        Moments::of(sums, t.distortion(x, sums[0], sums[1]))
+        let [mean, alpha, ..] = sums;
+        Moments::of(sums, t.distortion(x, (&lines, &normals), mean, alpha))
     }
 
     fn shared(&self, range: [f32; 2]) -> Option<SharedTransfer<'b>> {
@@ -237,11 +247,11 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
         Some(SharedTransfer {
             name: "piecewise",
             doc: "A piecewise function of a signal.",
-            variant: t.knots.len() as u32,
+            variant: (t.knots.len() as u32) << 1 | u32::from(t.level),
             values,
-            rebuild: |knots, values| {
+            rebuild: |variant, values| {
                 let (line, rest) = values.split_at(2);
-                let (knots, bumps) = rest.split_at(3 * knots as usize);
+                let (knots, bumps) = rest.split_at(3 * (variant >> 1) as usize);
                 let knot = |k: &[_]| Knot {
                     at: k[0],
                     jump: k[1],
@@ -256,6 +266,7 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
                     slope: line[1],
                     knots: knots.chunks_exact(3).map(knot).collect(),
                     bumps: bumps.chunks_exact(2).map(bump).collect(),
+                    level: variant & 1 == 1,
                 })
             },
         })

@@ -120,6 +120,15 @@ impl<'b> Signal<'b> {
         }
     }
 
+    /// The integer part of the mean and the rest in [0, 1), for lattices, whatever is carried. A place so
+    /// far away that it is one number is taken for 0: an integer cannot hold its cell.
+    pub fn place(&self) -> (Int<'b>, Float<'b>) {
+        match self.cell {
+            None => position::split(self.mean),
+            Some(cell) => (cell, self.mean.abs().lt(2.0).select(self.mean, 0.0)),
+        }
+    }
+
     /// The same signal with its mean as one number.
     pub fn flat(&self) -> Self {
         Self {
@@ -219,6 +228,17 @@ impl<'b> Signal<'b> {
             },
             binary: self.binary.map(|values| values.map(|v| v * by)),
             hermite: None,
+        }
+    }
+
+    /// `X / by` for a number that is known: a position keeps all its digits, which a product with the
+    /// rounded inverse of the number would not.
+    pub fn over(&self, by: f32) -> Self {
+        let (cell, mean) = position::divide((self.cell, self.mean), by);
+        Self {
+            cell,
+            mean,
+            ..self.scale(1.0 / by)
         }
     }
 

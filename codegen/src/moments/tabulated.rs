@@ -361,6 +361,11 @@ impl<'b> Transfer<'b> for Tabulated {
     fn range(&self, _: [f32; 2]) -> [f32; 2] {
         self.range
     }
+
+    fn period(&self) -> Option<f32> {
+        let [low, high] = self.domain;
+        self.periodic.then_some(high - low)
+    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Functions of one signal: Stein's slope, Bussgang's distortion, and the third cumulant.
 
 use super::{
-    Algebra, Mode, Signal,
+    Algebra, Mode, Signal, position,
     signal::{PARTS, UNBOUNDED, ordered},
     spread,
 };
-use crate::ir::{Float, SharedFunction};
+use crate::ir::{Float, SharedFunction, Sym2};
 use smallvec::SmallVec;
 
 /// The Gaussian that a transfer is averaged over.
@@ -60,7 +60,7 @@ pub trait Transfer<'b> {
     fn value(&self, x: Float<'b>) -> Float<'b>;
     /// The moments over a Gaussian.
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b>;
-    /// The period, where the function has one: positions then give their fraction alone.
+    /// The period, where the function has one: positions then give what is left of whole periods.
     fn period(&self) -> Option<f32> {
         None
     }
@@ -108,10 +108,9 @@ impl<'b> Algebra<'b> {
         let b = self.b;
         let range = t.range(x.range);
         // Whole periods do not matter, and a fraction keeps its detail far from the origin.
-        let mean = if t.period() == Some(1.0) {
-            x.mean
-        } else {
-            x.flat_mean()
+        let mean = match t.period() {
+            Some(period) if x.cell.is_some() => position::modulo((x.cell, x.mean), period),
+            _ => x.flat_mean(),
         };
         if !self.mode.spreads() || x.is_certain() {
             return Signal::certain(t.value(mean)).with_range(range);
@@ -223,6 +222,9 @@ const NAMES: [&str; PARTS] = ["mean", "gx", "gy", "hxx", "hxy", "hyy", "private"
 /// The inputs of [`through`]: a signal's parts, the variance of shared symbols, T's bounds.
 const INPUTS: usize = PARTS + 3;
 
+/// The largest variance that a function is averaged over.
+const WIDEST: f32 = 1e38;
+
 /// T(X) without what shared symbols give.
 fn through<'b>(
     inputs: &[Float<'b>],
@@ -235,7 +237,8 @@ fn through<'b>(
     let x = Signal::of_parts(parts);
     let linear = x.linear_variance();
     let other = x.other_variance() + carried;
-    let variance = linear + other;
+    // A spread whose square is no number is as wide as one that is: the limit is the same.
+    let variance = (linear + other).min(WIDEST);
     let (sd, inverse_sd) = spread(variance);
     let m = t.moments(&Gaussian {
         mean: x.mean,
@@ -259,7 +262,10 @@ fn through<'b>(
 
     // The second order.
     if wants.second {
-        out.h = out.h + x.g.outer().map(|outer| m.curvature * outer);
+        // From the left: a footprint's square may overflow.
+        let [gx, gy] = *x.g;
+        let [curved_x, curved_y] = [m.curvature * gx, m.curvature * gy];
+        out.h = out.h + Sym2([curved_x * gx, curved_x * gy, curved_y * gy]);
     }
     // The second Hermite coefficient squared: v² E[T″]²/2, of which the second order carries
     // |g|⁴ E[T″]²/2. A footprint's fourth power overflows: the curvature goes to each factor.

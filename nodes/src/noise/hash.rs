@@ -37,14 +37,21 @@ pub(crate) fn direction(hash: Uint<'_>) -> [Float<'_>; 2] {
     })
 }
 
-/// The words of a lattice column and of a lattice row, for [`corner`]: linear in the coordinate, so
-/// that neighbours differ by the factor.
-pub(crate) const COLUMN_FACTOR: u32 = 0x85eb_ca77;
-pub(crate) const ROW_FACTOR: u32 = 0x9e37_79b1;
+/// What a step along x and along y adds to what [`word`] mixes.
+pub(crate) const AXES: [u32; 2] = [0x85eb_ca77, 0x9e37_79b1];
 
-/// The hash of a lattice point from the words of its column and its row, in half the steps of
-/// [`Uint::scramble`]: only its leading bits are good, and they are what [`compass`] and
-/// [`signed`] read. Over 10⁶ points no correlation at any offset stands out.
+/// The word of a lattice column or row, for [`corner`], from its number times the factor of its axis
+/// (and, along one axis, the seed). Without this step a corner would be even: −a xor −b is a xor b
+/// but for trailing bits, so that a lattice would be its own point reflection.
+pub(crate) fn word(line: Uint<'_>) -> Uint<'_> {
+    (line ^ (line >> 15)) * 0x2c1b_3c6d
+}
+
+/// The hash of a lattice point from the words of its column and its row: only its leading bits are
+/// good, and they are what [`compass`] and [`signed`] read. Words are made once a line, and are half
+/// of the steps of [`Uint::scramble`]; corners are the other half. Over 1.6 · 10⁵ points no
+/// correlation with a reflection, a mirror image, a transposition or a shift by 2ᵏ cells along an
+/// axis or a diagonal, k up to 31, stands out.
 pub(crate) fn corner<'b>(column: Uint<'b>, row: Uint<'b>) -> Uint<'b> {
     let word = column ^ row;
     (word ^ (word >> 15)) * 0x846c_a68b

@@ -59,7 +59,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             the noise; filtered mean within 0.035 at any round footprint and within 0.025 at 8:1, \
             at any angle (`nodes/tests/perlin.rs`); its remainder is that of random lattices, while the \
             noise is 0 at every lattice point; 2×2 kernels up to 0.1 cells, then from 3×3 on, each \
-            about twice as dear.",
+            about twice as dear. The lattice repeats 2³² cells further along an axis, and first 63,217 \
+            cells away, 51,009 against x and 37,343 along y. No reflection, transposition or shift by \
+            a power of two along an axis is correlated with it, for any seed (`nodes/tests/symmetry.rs`).",
         references: "Perlin 1985 (lattice noise); Perlin 2002, *Improving Noise* (the quintic \
             fade); MaterialX 1.39 specification, node `noise2d`; Bruneton & Neyret 2012 §2.2; Hermite–Parseval \
             identity for the remainder.",

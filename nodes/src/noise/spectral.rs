@@ -32,9 +32,7 @@ pub(crate) fn filtered<'b>(
     let waves = spectrum.waves();
     let key = format!("spectral {mode:?} {spectrum:?}");
     let function = lower.function(&key, |module| build(module, mode, &waves));
-    let places: Vec<(Int<'b>, Float<'b>)> = (position.iter())
-        .map(|axis| (axis.cell.unwrap_or_else(|| b.int(0)), axis.mean))
-        .collect();
+    let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(Signal::place).collect();
     let arguments = (places, spread.covariance);
     let sums = if mode.filters() {
         // Where even the lowest wave is damped by e⁻²⁰ nothing but the variance is left.

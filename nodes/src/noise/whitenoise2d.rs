@@ -1,6 +1,5 @@
 //! `whitenoise2d`: a random number at every point.
 
-use crate::noise::cell::place::split;
 use crate::noise::cell::{VARIANCE, deviation, lattice_seed, number};
 use crate::noise::cellnoise2d::PERIOD;
 use crate::noise::field::{Field, Spread};
@@ -62,7 +61,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     lower.source_footprint(spread.eigenvalues[0].sqrt());
     let b = lower.b();
     let seed = lattice_seed(b, seed, 0x3c6e_f372);
-    let [(column, x), (row, y)] = [0, 1].map(|axis| split(&position[axis]));
+    let [(column, x), (row, y)] = [0, 1].map(|axis| position[axis].place());
     let value = number([column, row], seed, period);
     let zero = b.float(0.0);
     let mut field = Field {

@@ -9,7 +9,7 @@ mod near;
 mod wide;
 
 use super::bond::{Bond, Brick};
-use super::separable::{orders, phase, rest};
+use super::separable::{orders, rest};
 use super::taps::Taps;
 use crate::noise::field::{Field, Spread};
 use mipless_codegen::Lower;
@@ -47,11 +47,8 @@ pub(crate) fn numbered<'b>(
 ) -> Signal<'b> {
     let mode = lower.mode();
     let b = lower.b();
-    let place = [0, 1].map(|i| phase(&position[i]));
-    let cells = [0, 1].map(|i| {
-        let axis: &Signal<'b> = &position[i];
-        axis.cell.unwrap_or_else(|| axis.mean.floor().to_int())
-    });
+    let places = [0, 1].map(|i| position[i].place());
+    let (cells, place) = (places.map(|(cell, _)| cell), places.map(|(_, rest)| rest));
     let seed = b.uint(seed as u32);
     let fixed = offset.as_constant();
     let live = fixed.is_none().then_some(offset);

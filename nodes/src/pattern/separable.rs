@@ -155,10 +155,7 @@ pub(crate) struct Pattern<'a, 'b> {
 
 /// A coordinate modulo 1.
 pub(crate) fn phase<'b>(coordinate: &Signal<'b>) -> Float<'b> {
-    match coordinate.cell {
-        Some(_) => coordinate.mean,
-        None => coordinate.mean - coordinate.mean.floor(),
-    }
+    coordinate.place().1
 }
 
 /// The pattern at a position in unit cells, as a signal.

@@ -91,10 +91,9 @@ pub(crate) fn position<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b>
 
 /// The whole part of a coordinate and the rest, from 0 to 1.
 pub(crate) fn split<'b>(axis: &Signal<'b>) -> (Int<'b>, Float<'b>) {
-    let floor = axis.mean.floor();
-    let whole = floor.to_int();
-    let cell = axis.cell.map_or(whole, |cell| cell + whole);
-    (cell, axis.mean - floor)
+    let (cell, mean) = axis.place();
+    let floor = mean.floor();
+    (cell + floor.to_int(), mean - floor)
 }
 
 impl Address {

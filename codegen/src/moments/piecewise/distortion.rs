@@ -5,8 +5,9 @@
 
 use super::super::{Gaussian, Normal, curve::TEN};
 use super::{
-    CLOSEST, Piecewise,
+    CLOSEST, Knot, Piecewise,
     segment::{Bump, probability},
+    stretch::Lines,
 };
 use crate::ir::Float;
 
@@ -21,13 +22,11 @@ impl<'b> Piecewise<'b> {
     pub(super) fn distortion(
         &self,
         x: &Gaussian<'b>,
+        (lines, normals): (&Lines<'b>, &[Normal<'b>]),
         mean: Float<'b>,
         alpha: Float<'b>,
     ) -> Float<'b> {
-        let normals: Vec<Normal<'b>> = (self.knots.iter())
-            .map(|knot| Normal::at(x.mean - knot.at, x.inverse_sd))
-            .collect();
-        if let ([knot], [n]) = (&self.knots[..], &normals[..]) {
+        if let ([knot], [n]) = (&self.knots[..], normals) {
             if knot.bend.is_zero() {
                 // J² (PQ − φ²).
                 return knot.jump.square() * (n.below * n.above - n.density.square()).max(0.0);
@@ -37,52 +36,93 @@ impl<'b> Piecewise<'b> {
                 return knot.bend.square() * n.hinge_distortion() * x.variance;
             }
         }
-        let mut sum = mean.literal(0.0);
-        // The line of the current piece: value at m and slope.
-        let mut value = self.offset + self.slope * x.mean;
-        let mut slope = self.slope;
-        for piece in 0..=self.knots.len() {
-            let before = piece.checked_sub(1);
-            if let Some(knot) = before.map(|i| self.knots[i]) {
-                value += knot.bend * (x.mean - knot.at) + knot.jump;
-                slope += knot.bend;
-            }
-            let residual = Residual {
-                constant: value - mean,
-                slope: (slope - alpha) * x.sd,
+        let (Some(first), Some(last)) = (normals.first(), normals.last()) else {
+            return mean.literal(0.0);
+        };
+        // The residual of a line, from its value and slope at a knot.
+        let residual = |[slope, value]: [Float<'b>; 2], knot: &Knot<'b>| Residual {
+            constant: value - mean + slope * (x.mean - knot.at),
+            slope: (slope - alpha) * x.sd,
+        };
+        let (from, to) = (&self.knots[0], &self.knots[self.knots.len() - 1]);
+        let mut sum = residual(lines.before, from).below(first);
+        for (i, stretch) in lines.between.iter().enumerate() {
+            let on = Placed {
+                start: stretch.start - mean,
+                rise: stretch.rise,
+                bump: self.bumps.get(i).filter(|bump| !bump.is_flat()).copied(),
+                across: stretch.width * x.inverse_sd,
+                tilt: alpha * x.sd,
             };
-            sum += match (before.map(|i| normals[i]), normals.get(piece)) {
-                (Some(from), Some(to)) => match self.bump_on(piece - 1, x) {
-                    None => residual.between(&from, to),
-                    Some(bump) => residual.between_bent(&from, to, &bump),
-                },
-                (None, Some(to)) => residual.below(to),
-                (Some(from), None) => residual.above(&from),
-                (None, None) => mean.literal(0.0),
+            let ends = [&normals[i], &normals[i + 1]];
+            sum += match on.bump {
+                None => {
+                    let [from, to] = ends;
+                    let line = residual([stretch.slope, stretch.start], &self.knots[i]);
+                    // Narrow pieces, over which φ is nearly constant: the truncated moments cancel.
+                    (on.across.gt(1.0)).select(line.wide(from, to), on.narrow(from, &THREE))
+                }
+                Some(_) => {
+                    let width = stretch.width.max(CLOSEST);
+                    let at = (x.mean - self.knots[i].at) / width;
+                    on.bent(ends, [at, x.sd / width])
+                }
             };
         }
-        sum
-    }
-
-    /// The bump between knot `piece` and the next one, if there is one.
-    fn bump_on(&self, piece: usize, x: &Gaussian<'b>) -> Option<Placed<'b>> {
-        let bump = *self.bumps.get(piece).filter(|bump| !bump.is_flat())?;
-        let (from, to) = (self.knots[piece].at, self.knots[piece + 1].at);
-        let width = (to - from).max(CLOSEST);
-        Some(Placed {
-            bump,
-            at: (x.mean - from) / width,
-            gain: x.sd / width,
-        })
+        sum + residual(lines.after, to).above(last)
     }
 }
 
-/// A bump on a piece, and τ = at + gain · z. Standard scores of knots are limited, so τ does not
-/// follow from them.
+/// What a stretch is less E[T] + α (x − m), in terms of τ along it.
 struct Placed<'b> {
-    bump: Bump<'b>,
-    at: Float<'b>,
-    gain: Float<'b>,
+    /// Where it begins, less E[T].
+    start: Float<'b>,
+    rise: Float<'b>,
+    bump: Option<Bump<'b>>,
+    /// How long it is in σ.
+    across: Float<'b>,
+    /// ασ.
+    tilt: Float<'b>,
+}
+
+impl<'b> Placed<'b> {
+    /// The residual at τ and z. Standard scores of knots are limited, so τ and z do not follow from each
+    /// other.
+    fn at(&self, t: Float<'b>, z: Float<'b>) -> Float<'b> {
+        let straight = self.start + self.rise * t - self.tilt * z;
+        (self.bump).map_or(straight, |bump| straight + bump.at(t))
+    }
+
+    /// z at τ, counted from the end whose score is not limited where the other one's is.
+    fn score(&self, from: &Normal<'b>, t: Float<'b>) -> Float<'b> {
+        self.across * t - from.z
+    }
+
+    /// ∫ r² φ over the stretch, by nodes in τ.
+    fn narrow(&self, from: &Normal<'b>, rule: &[(f32, f32)]) -> Float<'b> {
+        let nodes = rule.iter().map(|&(node, weight)| {
+            let t = self.rise.literal(node);
+            let z = self.score(from, t);
+            weighted(z, weight) * self.at(t, z).square()
+        });
+        self.across * self.rise.builder().sum(nodes)
+    }
+
+    /// The same with a bump; `place` is τ at m, and τ per σ.
+    fn bent(&self, ends: [&Normal<'b>; 2], [at, gain]: [Float<'b>; 2]) -> Float<'b> {
+        // The density beyond ±4.5 adds nothing to a wide stretch; τ of a narrow one is exact.
+        let [start, end] = ends.map(|edge| (-edge.z).clamp(-4.5, 4.5));
+        let wide = self.across.gt(1.0);
+        let width = wide.select(end - start, self.across);
+        let nodes = TEN.iter().map(|&(node, weight)| {
+            let t = self.rise.literal(node);
+            let z = start + width * node;
+            let z = wide.select(z, self.score(ends[0], t));
+            let t = wide.select((at + gain * z).clamp(0.0, 1.0), t);
+            weighted(z, weight) * self.at(t, z).square()
+        });
+        width * self.rise.builder().sum(nodes)
+    }
 }
 
 /// The residual e + f z within a piece.
@@ -102,21 +142,22 @@ impl<'b> Residual<'b> {
     /// ∫ (e + f z)² φ between two edges, at least 0.
     pub(in super::super) fn between(self, from: &Normal<'b>, to: &Normal<'b>) -> Float<'b> {
         let (start, end) = (-from.z, -to.z);
-        let p = probability(from, to);
-        let second = p + (start * from.density - end * to.density);
-        let wide = self.over(p, from.density - to.density, second);
+        let width = end - start;
         // Narrow pieces, over which φ is nearly constant: the truncated moments cancel.
-        let narrow = integrated(start, end, &THREE, |z| self.at(z));
-        (end - start).gt(1.0).select(wide, narrow)
+        let nodes = THREE.iter().map(|&(node, weight)| {
+            let z = start + width * node;
+            weighted(z, weight) * self.at(z).square()
+        });
+        let narrow = width * width.builder().sum(nodes);
+        width.gt(1.0).select(self.wide(from, to), narrow)
     }
 
-    /// The same with a bump on the piece.
-    fn between_bent(self, from: &Normal<'b>, to: &Normal<'b>, on: &Placed<'b>) -> Float<'b> {
-        // The density beyond ±4.5 adds nothing.
-        let [start, end] = [from, to].map(|edge| (-edge.z).clamp(-4.5, 4.5));
-        integrated(start, end, &TEN, |z| {
-            self.at(z) + on.bump.at((on.at + on.gain * z).clamp(0.0, 1.0))
-        })
+    /// The same between edges that are more than 1 apart.
+    fn wide(self, from: &Normal<'b>, to: &Normal<'b>) -> Float<'b> {
+        let (start, end) = (-from.z, -to.z);
+        let p = probability(from, to);
+        let second = p + (start * from.density - end * to.density);
+        self.over(p, from.density - to.density, second)
     }
 
     /// The same before an edge.
@@ -139,18 +180,7 @@ impl<'b> Residual<'b> {
     }
 }
 
-/// ∫ r(z)² φ from `start` to `end`: Σ w φ(z) r(z)² (end − start) over the nodes.
-fn integrated<'b>(
-    start: Float<'b>,
-    end: Float<'b>,
-    rule: &[(f32, f32)],
-    residual: impl Fn(Float<'b>) -> Float<'b>,
-) -> Float<'b> {
-    let width = end - start;
-    let parts = rule.iter().map(|&(node, weight)| {
-        let z = start + width * node;
-        let density = (z.square() * -0.5).exp() * (0.398_942_3 * weight);
-        density * residual(z).square()
-    });
-    width.builder().sum(parts) * width
+/// φ(z) times a weight.
+fn weighted(z: Float<'_>, weight: f32) -> Float<'_> {
+    (z.square() * -0.5).exp() * (0.398_942_3 * weight)
 }

@@ -68,7 +68,7 @@ impl<'b> Piecewise<'b> {
         };
         Self {
             bumps,
-            ..Self::straight(offset, zero, knots.collect())
+            ..Self::straight(offset, zero, knots.collect()).levelled()
         }
     }
 }

@@ -117,3 +117,110 @@ fn the_range_of_a_bump_that_overshoots() {
         "{low} {high}"
     );
 }
+
+/// Deviations of 10⁻⁶ to 10¹² segments.
+fn decades() -> Vec<f32> {
+    (-6..=12).map(|exponent| 10f32.powi(exponent)).collect()
+}
+
+/// Means from far before to far after the segment, in σ and in the segment.
+fn far_and_near() -> Vec<(f32, f32)> {
+    let mut points = Vec::new();
+    for sd in decades() {
+        for z in [-6.0, -2.5, -1.0, -0.3, 0.0, 0.4, 1.0, 3.0, 7.0] {
+            points.push((z * sd, sd * sd));
+            points.push((z * sd + 0.3, sd * sd));
+        }
+        points.extend([0.0, 0.25, 0.5, 0.9, 1.0].map(|m| (m, sd * sd)));
+    }
+    points
+}
+
+#[test]
+fn a_segment_keeps_its_digits_under_any_spread() {
+    let clamp = |x: f64| x.clamp(0.0, 1.0);
+    let smooth = |x: f64| {
+        let t = x.clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    };
+    let several = |x: f64| ramp_of_three(x);
+    let cases: [(&str, super::Make<'_>, &dyn Fn(f64) -> f64, f64); 3] = [
+        (
+            "clamp",
+            &|b| Box::new(Piecewise::clamp(b.float(0.0), b.float(1.0))),
+            &clamp,
+            1e-5,
+        ),
+        (
+            "smoothstep",
+            &|b| Box::new(Piecewise::smoothstep(b.float(0.0), b.float(1.0))),
+            &smooth,
+            3e-4,
+        ),
+        ("three stops", &three_stops, &several, 1e-5),
+    ];
+    for (name, make, exact, tolerance) in cases {
+        Case {
+            name,
+            make,
+            exact,
+            breaks: vec![0.0, 0.5, 1.0],
+            points: far_and_near(),
+            reach: 9.0,
+            tolerances: [tolerance, 1e-3, 3e-4, 1e-3, 3e-3],
+            size: &unit,
+        }
+        .integrate();
+    }
+}
+
+const THREE_STOPS: [(f32, f32); 3] = [(0.0, 0.2), (0.5, 1.0), (1.0, 0.4)];
+
+fn number(b: &Builder, at: f32, y: f32) -> (crate::ir::Float<'_>, crate::ir::Float<'_>) {
+    (b.float(at), b.float(y))
+}
+
+fn three_stops(b: &Builder) -> Box<dyn Transfer<'_> + '_> {
+    let stops = THREE_STOPS.map(|(at, y)| number(b, at, y));
+    Box::new(Piecewise::ramp(&stops, Shape::Linear))
+}
+
+fn ramp_of_three(x: f64) -> f64 {
+    if x < 0.5 {
+        0.2 + 1.6 * x.max(0.0)
+    } else {
+        1.0 - 1.2 * (x.min(1.0) - 0.5)
+    }
+}
+
+#[test]
+fn a_ramp_whose_last_stop_is_beyond_the_input_still_rises() {
+    // The stop at 2 is beyond the input's range: after the one at 0 the ramp goes on.
+    let make: super::Make<'_> = &|b| {
+        let stops = [(-1.0, 0.0), (0.0, 0.5), (2.0, 1.0)].map(|(at, y)| number(b, at, y));
+        Box::new(Piecewise::ramp(&stops, Shape::Linear))
+    };
+    let module = super::module(make, [-1.5, 1.5]);
+    let points = [(1.0, 1e-6), (1.3, 1e-4), (0.5, 1e-8)];
+    for (&(m, _), moments) in points.iter().zip(super::evaluate::<f32>(&module, &points)) {
+        let right = 0.5 + 0.25 * f64::from(m);
+        assert!((moments[0] - right).abs() < 1e-5, "{moments:?} at {m}");
+    }
+}
+
+#[test]
+fn crossed_bounds_are_a_step_and_no_negative_variance() {
+    let make: super::Make<'_> = &|b| Box::new(Piecewise::smoothstep(b.float(1.0), b.float(-0.5)));
+    let exact = |x: f64| f64::from(u8::from(x >= -0.5));
+    Case {
+        name: "crossed",
+        make,
+        exact: &exact,
+        breaks: vec![-0.5],
+        points: grid(-2.0, 3.0, &DEVIATIONS),
+        reach: 9.0,
+        tolerances: [1e-6, 1e-6, 2e-6, 4e-6, 1e-3],
+        size: &unit,
+    }
+    .check();
+}

@@ -3,7 +3,6 @@
 //! A cell weighs what of the Gaussian lies in it, so that means, slopes and covariances are sums over
 //! the cells of a window, as in the plane; what does not fit fades to what cells have on average.
 
-use super::place::split;
 use super::{coincidence, counted, deviation, fading, report, window};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Scalar, Scalars};
@@ -167,7 +166,7 @@ pub(crate) fn filtered<'b>(
     if let Some(values) = place.binary.filter(|_| mode.spreads()) {
         return between(place, line, values);
     }
-    let (cell, x) = split(place);
+    let (cell, x) = place.place();
     let centre = (line.numbers)(cell + x.floor().to_int(), &line.parameters);
     let channels = centre.len();
     if mode == Mode::Point || place.is_certain() {

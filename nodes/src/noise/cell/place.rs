@@ -6,17 +6,6 @@ use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Scalars, Sym2, Vec2}
 use mipless_codegen::moments::Signal;
 use std::array;
 
-/// The cell and the fraction of a coordinate, whatever it carries.
-pub(crate) fn split<'b>(axis: &Signal<'b>) -> (Int<'b>, Float<'b>) {
-    axis.cell.map_or_else(
-        || {
-            let whole = axis.mean.floor();
-            (whole.to_int(), axis.mean - whole)
-        },
-        |cell| (cell, axis.mean),
-    )
-}
-
 /// The results of a function at a position, with the footprint after `others` where the mode filters.
 pub(crate) fn called<'b>(
     lower: &Lower<'_, 'b>,
@@ -24,7 +13,7 @@ pub(crate) fn called<'b>(
     (position, spread): (&[Signal<'b>], &Spread<'b>),
     others: impl Scalars<'b>,
 ) -> Vec<Float<'b>> {
-    let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(split).collect();
+    let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(Signal::place).collect();
     let footprint = (lower.mode().filters()).then_some((spread.covariance, spread.eigenvalues));
     lower.b().call(function, (places, others, footprint))
 }

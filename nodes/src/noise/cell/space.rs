@@ -4,7 +4,7 @@
 //! that they have given it, and what they are over a layer is what they are over a plane of cells.
 
 use super::passed::{Passed, passed};
-use super::place::{declared, split};
+use super::place::declared;
 use super::{
     Cells, Filtered, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading,
     lattice_seed, number, report, row, window,
@@ -27,7 +27,7 @@ pub(crate) fn filtered<'b>(
     report(lower, spread.size());
     let key = format!("cells in space {mode:?} {seed} {period}");
     let function = lower.function(&key, |module| build(module, mode, seed, period));
-    let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(split).collect();
+    let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(Signal::place).collect();
     let captures = mode.filters().then_some(spread);
     let mut sums = b.call(&function, (places, captures));
     match mode {

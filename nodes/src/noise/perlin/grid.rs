@@ -1,11 +1,9 @@
 //! From the columns and rows around a position to the hashes of their lattice points.
 
-use crate::noise::hash::{COLUMN_FACTOR, ROW_FACTOR, corner};
+use crate::noise::hash::{AXES, corner, word};
 use crate::noise::sum::Octave;
 use crate::noise::tile::wrapped;
 use mipless_codegen::ir::{Builder, Float, Int, Scalar, Scalars, Uint};
-
-const FACTORS: [u32; 2] = [COLUMN_FACTOR, ROW_FACTOR];
 
 /// The lattice around a position.
 #[derive(Clone, Copy, Debug)]
@@ -35,28 +33,33 @@ impl<'b> Grid<'b> {
     }
 
     /// The word of the column (axis 0) or row (axis 1) at `offset`, an integer as a real, from the
-    /// position's cell. Words of an axis differ by its factor from one to the next.
+    /// position's cell.
     pub(super) fn word(&self, axis: usize, offset: Float<'b>) -> Uint<'b> {
+        word(self.line(axis, offset))
+    }
+
+    /// What the word is made of: lines of an axis differ by its factor from one to the next.
+    fn line(&self, axis: usize, offset: Float<'b>) -> Uint<'b> {
         let cell = self.cells[axis];
         let place = match self.period {
             None => cell + offset.to_int(),
             Some(period) => wrapped(cell.to_float() + offset, period).to_int(),
         };
-        let word = place.to_uint() * FACTORS[axis];
-        if axis == 1 { word + self.seed } else { word }
+        let line = place.to_uint() * AXES[axis];
+        if axis == 1 { line + self.seed } else { line }
     }
 
     /// The hashes of the four corners of the cell: (0, 0), (1, 0), (0, 1), (1, 1).
     pub(super) fn corners(&self) -> [Uint<'b>; 4] {
         let b = self.seed.builder();
         let [columns, rows] = [0, 1].map(|axis| {
-            let first = self.word(axis, b.float(0.0));
+            let first = self.line(axis, b.float(0.0));
             let second = if self.period.is_some() {
-                self.word(axis, b.float(1.0))
+                self.line(axis, b.float(1.0))
             } else {
-                first + FACTORS[axis]
+                first + AXES[axis]
             };
-            [first, second]
+            [first, second].map(word)
         });
         [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| corner(columns[i], rows[j]))
     }

@@ -29,17 +29,7 @@ impl<'b, const AXES: usize> Octave<'b, AXES> {
         octaves: Octaves,
     ) -> Self {
         let b = seed.builder();
-        // The lattice needs a cell and a fraction, whatever the position carries.
-        let places: [(Int<'b>, Float<'b>); AXES] = array::from_fn(|axis| {
-            let place = &position[axis];
-            place.cell.map_or_else(
-                || {
-                    let whole = place.mean.floor();
-                    (whole.to_int(), place.mean - whole)
-                },
-                |cell| (cell, place.mean),
-            )
-        });
+        let places: [(Int<'b>, Float<'b>); AXES] = array::from_fn(|axis| position[axis].place());
         Self {
             cells: places.map(|(cell, _)| cell),
             fractions: places.map(|(_, fraction)| fraction),
@@ -84,10 +74,9 @@ impl<'b, const AXES: usize> Octave<'b, AXES> {
                 cell: Some(self.cells[axis]),
                 ..Signal::certain(self.fractions[axis] + 0.381_966 / lacunarity)
             };
-            let next = start * lacunarity;
-            let cell = next.cell.expect("a position keeps its cell");
+            let (cell, fraction) = (start * lacunarity).place();
             b.result(format!("cell_{}", NAMES[axis]), cell);
-            b.result(NAMES[axis], next.mean);
+            b.result(NAMES[axis], fraction);
         }
         b.result("scale", self.scale * lacunarity);
         b.result("amplitude", self.amplitude * diminish);
