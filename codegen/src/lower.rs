@@ -169,6 +169,8 @@ struct Facts {
     crossed: Vec<bool>,
     /// Whether literals alone shape each node's output.
     literal: Vec<bool>,
+    /// Whether the surface's place shapes each node's output.
+    placed: Vec<bool>,
 }
 
 impl Facts {
@@ -178,6 +180,7 @@ impl Facts {
             order: order::order(graph, &live),
             crossed: symbols::crossed(graph),
             literal: symbols::literal(graph),
+            placed: symbols::placed(graph),
             live,
         }
     }
@@ -272,6 +275,8 @@ pub struct Lower<'g, 'b> {
     in_rule: bool,
     /// Whether something that is not linear follows a source.
     nonlinear: bool,
+    /// Whether the node at work reads what is upstream over another footprint.
+    reads_elsewhere: bool,
 }
 
 impl<'g, 'b> Lower<'g, 'b> {
@@ -311,6 +316,7 @@ impl<'g, 'b> Lower<'g, 'b> {
             is_only_measured: false,
             in_rule: false,
             nonlinear: false,
+            reads_elsewhere: false,
         }
     }
 
@@ -371,6 +377,7 @@ impl<'g, 'b> Lower<'g, 'b> {
             self.algebra.bent = false;
             self.algebra.knots = 0;
             self.algebra.period = None;
+            self.reads_elsewhere = false;
             let mut bundle = (definition.lower)(self, node);
             assert_eq!(
                 bundle.len(),

@@ -187,6 +187,7 @@ impl<'b> Lower<'_, 'b> {
                     fixed &= chain.fixed;
                 }
                 Known::Opaque => opaque = true,
+                Known::Placed => return None,
             }
         }
         let pair = |[first, second]: [Entry<'b>; 2], bends, fixed| Pair {
@@ -324,7 +325,7 @@ fn function(
     let name = super::identifier(&compiler.graph.nodes[index].name);
     let b = &Builder::new(format!("{name}_of"), "A function of two signals.");
     let entries = entries(b);
-    let arguments = Arguments::without_place(b, Vec::new());
+    let arguments = Arguments::without_place(b, compiler.graph, Vec::new());
     let mut lower = Lower::with(compiler, module, Algebra::new(b, mode), arguments);
     let bundle = lower_region(&mut lower, index, pair, entries);
     value_results(b, &bundle);
