@@ -159,6 +159,15 @@ impl InputView for Varying {
     }
 }
 
+/// Whether a node is a source of detail: whatever its inputs are, it is random by itself.
+fn is_source(node: &Node) -> bool {
+    let behaviour = (node.spec.class)(&Varying);
+    matches!(
+        behaviour,
+        Behaviour::Gaussian { .. } | Behaviour::Random { .. }
+    )
+}
+
 /// What is known of a graph's nodes before they are lowered.
 struct Facts {
     /// How many live edges read each node's output.
@@ -334,12 +343,7 @@ impl<'g, 'b> Lower<'g, 'b> {
         let mut uses = vec![0; graph.nodes.len()];
         for (index, node) in graph.nodes.iter().enumerate().rev() {
             let live = self.compiler.facts.live[index] > 0;
-            // Whatever its inputs are, a source is Gaussian by itself.
-            let source = matches!(
-                (node.spec.class)(&Varying),
-                Behaviour::Gaussian { .. } | Behaviour::Random { .. }
-            );
-            if uses[index] == 0 && !(live && source) {
+            if uses[index] == 0 && !(live && is_source(node)) {
                 continue;
             }
             if uses[index] == 0 {

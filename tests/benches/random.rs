@@ -1,12 +1,22 @@
-//! Random graphs: which laws they break, and how far `auto` and `point` are from the truth.
+//! Random graphs: how far `auto` and `point` are from the truth, and which laws they break.
+//!
+//! `cargo bench -p mipless-tests --bench random -- COUNT [FIRST]` measures the graphs of COUNT seeds
+//! from FIRST on, in a band of a quarter to four wavelengths of each, against samples, and prints how
+//! many are worse by `auto` than by `point`, the errors, the bias of the mean of a frame far away, and
+//! the worst graphs with the node that is suspected.
 //!
 //! `cargo bench -p mipless-tests --bench random -- laws COUNT [FIRST]` takes the graphs of COUNT seeds
 //! from FIRST on through all laws of composition by every method, and prints what is broken, by law.
 //! Three graphs of each kind of failure are reduced and written to `target/composition`, unless
 //! `FAST=1` is set. `LAWS=vanishing,far` and `METHODS=local,quad` look at less.
 //!
+//! `cargo bench -p mipless-tests --bench random -- seed SEED` prints the graph of a seed.
+//!
 //! `cargo bench -p mipless-tests --bench random -- file GRAPH.json…` prints what graphs break, and
 //! what each method makes of pixels of several sizes.
+
+#[path = "random/accuracy.rs"]
+mod accuracy;
 
 use mipless::{Footprint, Method, Options};
 use mipless_tests::case::load;
@@ -34,8 +44,12 @@ fn main() -> ExitCode {
     match arguments.first().map(String::as_str) {
         Some("laws") => laws(number(1).unwrap_or(300), number(2).unwrap_or(0)),
         Some("file") => files(&arguments[1..]),
+        Some("seed") => println!("{:#}", of_seed(number(1).unwrap_or(0)).0),
+        Some(first) if first.parse::<u64>().is_ok() => {
+            accuracy::measure(number(0).expect("a number"), number(1).unwrap_or(0));
+        }
         _ => {
-            eprintln!("laws COUNT [FIRST], or file GRAPH.json…");
+            eprintln!("COUNT [FIRST], laws COUNT [FIRST], seed SEED, or file GRAPH.json…");
             return ExitCode::from(2);
         }
     }

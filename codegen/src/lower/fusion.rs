@@ -8,7 +8,7 @@
 //! between, or where the amplitude of the noise itself is live, the region is averaged where it
 //! runs, by [`super::taps`].
 
-use super::{Arguments, Bundle, Compiler, Lower, Options, value_results};
+use super::{Arguments, Bundle, Compiler, Lower, Options, is_source, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Branch, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
@@ -83,8 +83,9 @@ impl<'b> Lower<'_, 'b> {
         node: &Node,
         closed: &[Signal<'b>],
     ) -> Option<Bundle<'b>> {
-        // What looks at other places than its own is no function of the signals here.
-        if !self.algebra.mode.spreads() || self.reads_elsewhere {
+        // What looks at other places than its own is no function of the signals here, and a source
+        // varies within a step of any table.
+        if !self.algebra.mode.spreads() || self.reads_elsewhere || is_source(node) {
             return None;
         }
         let pair = self.fuse_pair(index, node, closed);
