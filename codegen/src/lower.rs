@@ -198,6 +198,15 @@ impl InputView for Varying {
     }
 }
 
+/// Whether a node is a source of detail: whatever its inputs are, it is random by itself.
+fn is_source(node: &Node) -> bool {
+    let behaviour = (node.spec.class)(&Varying);
+    matches!(
+        behaviour,
+        Behaviour::Gaussian { .. } | Behaviour::Random { .. }
+    )
+}
+
 /// What is known of a graph's nodes before they are lowered.
 struct Facts {
     /// How many live edges read each node's output.
@@ -212,6 +221,8 @@ struct Facts {
     sampled: FxHashMap<usize, sampled::Sampling>,
     /// The nodes that repeat, which `auto` reads from maps.
     repeated: FxHashMap<usize, torus::Repeated>,
+    /// Whether the surface's place shapes each node's output.
+    placed: Vec<bool>,
 }
 
 impl Facts {
@@ -223,6 +234,7 @@ impl Facts {
             literal: symbols::literal(graph),
             sampled: FxHashMap::default(),
             repeated: FxHashMap::default(),
+            placed: symbols::placed(graph),
             live,
         }
     }
@@ -317,6 +329,8 @@ pub struct Lower<'g, 'b> {
     in_rule: bool,
     /// Whether something that is not linear follows a source.
     nonlinear: bool,
+    /// Whether the node at work reads what is upstream over another footprint.
+    reads_elsewhere: bool,
 }
 
 impl<'g, 'b> Lower<'g, 'b> {
@@ -356,6 +370,7 @@ impl<'g, 'b> Lower<'g, 'b> {
             is_only_measured: false,
             in_rule: false,
             nonlinear: false,
+            reads_elsewhere: false,
         }
     }
 
@@ -373,12 +388,7 @@ impl<'g, 'b> Lower<'g, 'b> {
         let mut uses = vec![0; graph.nodes.len()];
         for (index, node) in graph.nodes.iter().enumerate().rev() {
             let live = self.compiler.facts.live[index] > 0;
-            // Whatever its inputs are, a source is Gaussian by itself.
-            let source = matches!(
-                (node.spec.class)(&Varying),
-                Behaviour::Gaussian { .. } | Behaviour::Random { .. }
-            );
-            if uses[index] == 0 && !(live && source) {
+            if uses[index] == 0 && !(live && is_source(node)) {
                 continue;
             }
             if uses[index] == 0 {
@@ -416,6 +426,7 @@ impl<'g, 'b> Lower<'g, 'b> {
             self.algebra.bent = false;
             self.algebra.knots = 0;
             self.algebra.period = None;
+            self.reads_elsewhere = false;
             let mut bundle = (definition.lower)(self, node);
             assert_eq!(
                 bundle.len(),

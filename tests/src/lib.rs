@@ -8,6 +8,7 @@
 //! | `snapshots` | the IR and the WGSL of every graph, and that compilation is deterministic |
 //! | `stability` | no footprint, however extreme, gives anything but a finite number in range |
 //! | `properties` | random graphs, nodes with any input set, and mutilated documents |
+//! | `composition` | the laws that every graph keeps, by random graphs over the whole catalogue |
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
 //! | `field` | graphs as strangers write them are filtered, and nowhere worse than a point |
 //! | `bounds` | nodes with two bounds, in any order, given in any way |
@@ -21,9 +22,11 @@
 pub mod book;
 pub mod case;
 pub mod generated;
+pub mod law;
 pub mod markdown;
 pub mod random;
 pub mod random_graph;
+pub mod reduce;
 pub mod thumbnail;
 pub mod timing;
 pub mod tolerance;

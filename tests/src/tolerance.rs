@@ -22,6 +22,15 @@ pub const RANGE: f64 = 2e-5;
 /// to max(1, |x|). Closed forms switch to their limits below σ ≈ 1e-6.
 pub const VANISHING: f64 = 1e-4;
 
+/// The difference between f32 and f64, relative to max(1, |x|), up to which a random graph agrees
+/// beyond what moving its footprint by a rounding does. Its numbers may be a thousand times as large
+/// inside as they are in its outputs.
+pub const ROUNDING: f64 = 1e-3;
+
+/// By how much of the square of its bounds' distance a variance may exceed what numbers within them
+/// can have.
+pub const SPREAD: f64 = 1e-3;
+
 /// The level of significance of the hypothesis tests of one suite together; each test of `n` gets
 /// 1/n of it (Bonferroni). With fixed random numbers a suite passes always or never.
 pub const SIGNIFICANCE: f64 = 1e-3;

@@ -26,11 +26,16 @@ impl<'b> Arguments<'b> {
         }
     }
 
-    /// Of a function that reads these inputs of the graph, but not where the pixel is.
-    pub(super) fn without_place(b: &'b Builder, parameters: Vec<Scalar<'b>>) -> Self {
+    /// Of a function that reads these inputs of the graph, but not where the pixel is. What it holds
+    /// is the same everywhere, and may still be written as a noise at some place.
+    pub(super) fn without_place(
+        b: &'b Builder,
+        graph: &Graph,
+        parameters: Vec<Scalar<'b>>,
+    ) -> Self {
         Self {
             footprint: Place::origin(b),
-            position: None,
+            position: symbols::reads_position(graph).then(|| Place::origin(b)),
             parameters,
         }
     }

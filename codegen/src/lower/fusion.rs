@@ -8,7 +8,7 @@
 //! between, or where the amplitude of the noise itself is live, the region is averaged where it
 //! runs, by [`super::taps`].
 
-use super::{Arguments, Bundle, Compiler, Lower, Options, value_results};
+use super::{Arguments, Bundle, Compiler, Lower, Options, is_source, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Branch, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
@@ -45,6 +45,9 @@ pub(super) enum Known<'b> {
     Function(Chain<'b>),
     /// Several signals, of which no one function is known.
     Opaque,
+    /// A number that differs from place to place: a region is a function of signals alone, and could
+    /// not compute it.
+    Placed,
 }
 
 impl Chain<'_> {
@@ -80,7 +83,9 @@ impl<'b> Lower<'_, 'b> {
         node: &Node,
         closed: &[Signal<'b>],
     ) -> Option<Bundle<'b>> {
-        if !self.algebra.mode.spreads() {
+        // What looks at other places than its own is no function of the signals here, and a source
+        // varies within a step of any table.
+        if !self.algebra.mode.spreads() || self.reads_elsewhere || is_source(node) {
             return None;
         }
         let pair = self.fuse_pair(index, node, closed);
@@ -168,7 +173,7 @@ impl<'b> Lower<'_, 'b> {
                     fixed &= literal;
                     continue;
                 }
-                Known::Opaque => return None,
+                Known::Opaque | Known::Placed => return None,
             };
             fixed &= this.fixed;
             chain = Some(match chain {
@@ -190,8 +195,15 @@ impl<'b> Lower<'_, 'b> {
         }
         let bundle = self.bundles[id.index()].as_ref()?;
         Some(if bundle.iter().all(Signal::is_certain) {
-            Known::Certain {
-                literal: self.compiler.facts.literal[id.index()],
+            // A noise without an amplitude is read at a place, but is the same everywhere.
+            let same =
+                |signal: &Signal<'b>| signal.cell.is_none() && signal.mean.as_constant().is_some();
+            if self.compiler.facts.placed[id.index()] && !bundle.iter().all(same) {
+                Known::Placed
+            } else {
+                Known::Certain {
+                    literal: self.compiler.facts.literal[id.index()],
+                }
             }
         } else if let [signal] = &bundle[..] {
             Known::Function(Chain {
@@ -279,7 +291,7 @@ fn function(
     let name = super::identifier(&graph.nodes[index].name);
     let b = &Builder::new(format!("{name}_of"), "A function of one signal.");
     let argument = Signal::certain(b.float_param("x"));
-    let arguments = Arguments::without_place(b, Vec::new());
+    let arguments = Arguments::without_place(b, compiler.graph, Vec::new());
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
     lower.bundles[entry.index()] = Some(vec![argument]);
     for node in region(compiler, index, &[entry]) {

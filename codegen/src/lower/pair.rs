@@ -154,7 +154,8 @@ impl<'b> Lower<'_, 'b> {
                 entries.push(entry.clone());
             }
         };
-        let mut opaque = false;
+        // Whether all inputs that vary are scalars: no other one can be an entry.
+        let mut scalars = true;
         for input in &node.inputs {
             let id = match &input.source {
                 Source::Literal(_) => continue,
@@ -166,11 +167,11 @@ impl<'b> Lower<'_, 'b> {
                 Source::Node(id) => *id,
             };
             let bundle = self.bundles[id.index()].as_ref()?;
-            if let [signal] = &bundle[..]
-                && !signal.is_certain()
-                && !direct.iter().any(|known| known.from == From::Node(id))
-            {
-                direct.push(Entry::node(id, Rc::new(signal.clone())));
+            match &bundle[..] {
+                bundle if bundle.iter().all(Signal::is_certain) => {}
+                [_] if direct.iter().any(|known| known.from == From::Node(id)) => {}
+                [signal] => direct.push(Entry::node(id, Rc::new(signal.clone()))),
+                _ => scalars = false,
             }
             if let Some(pair) = &self.pairs[id.index()] {
                 insert(&pair.first);
@@ -186,7 +187,7 @@ impl<'b> Lower<'_, 'b> {
                     bends = bends.max(chain.bends);
                     fixed &= chain.fixed;
                 }
-                Known::Opaque => opaque = true,
+                Known::Opaque | Known::Placed => return None,
             }
         }
         let pair = |[first, second]: [Entry<'b>; 2], bends, fixed| Pair {
@@ -197,7 +198,7 @@ impl<'b> Lower<'_, 'b> {
         };
         match <[Entry<'b>; 2]>::try_from(entries) {
             // The rest of a sum is only known together with the term's own signal.
-            Ok(entries) if !opaque && matches!(entries[0].from, From::Node(_)) => {
+            Ok(entries) if matches!(entries[0].from, From::Node(_)) => {
                 Some(pair(entries, bends, fixed))
             }
             Err(entries) if entries.len() < 2 => None,
@@ -214,7 +215,7 @@ impl<'b> Lower<'_, 'b> {
                     return Some(pair([sum.of.clone(), rest], 1, sum.fixed));
                 }
                 let entries = <[Entry<'b>; 2]>::try_from(direct).ok()?;
-                Some(pair(entries, 0, fixed))
+                scalars.then(|| pair(entries, 0, fixed))
             }
         }
     }
@@ -324,7 +325,7 @@ fn function(
     let name = super::identifier(&compiler.graph.nodes[index].name);
     let b = &Builder::new(format!("{name}_of"), "A function of two signals.");
     let entries = entries(b);
-    let arguments = Arguments::without_place(b, Vec::new());
+    let arguments = Arguments::without_place(b, compiler.graph, Vec::new());
     let mut lower = Lower::with(compiler, module, Algebra::new(b, mode), arguments);
     let bundle = lower_region(&mut lower, index, pair, entries);
     value_results(b, &bundle);

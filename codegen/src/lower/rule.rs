@@ -80,7 +80,7 @@ impl<'b> Lower<'_, 'b> {
                 .collect();
             let numbers: Vec<Scalar<'_>> = values.collect();
             let mut module = Module::default();
-            let arguments = Arguments::without_place(b, Vec::new());
+            let arguments = Arguments::without_place(b, compiler.graph, Vec::new());
             let algebra = Algebra::new(b, mode);
             let mut lower = Lower::with(compiler, &mut module, algebra, arguments);
             lower.in_rule = true;

@@ -69,6 +69,21 @@ pub(super) fn literal(graph: &Graph) -> Vec<bool> {
     literal
 }
 
+/// Whether the surface's place shapes each node.
+pub(super) fn placed(graph: &Graph) -> Vec<bool> {
+    let mut placed = Vec::with_capacity(graph.nodes.len());
+    for node in &graph.nodes {
+        let reads = node.inputs.iter().any(|input| match &input.source {
+            Source::Surface => true,
+            Source::Node(id) => placed[id.index()],
+            Source::Literal(_) | Source::Parameter(_) => false,
+        });
+        let is_place = matches!((node.spec.class)(&Varying), Behaviour::Position);
+        placed.push(reads || is_place);
+    }
+    placed
+}
+
 /// How many live nodes carry each symbol. A symbol is its own only while several do: from the fork
 /// where it was born to where its paths have met.
 #[derive(Debug, Default)]

@@ -126,7 +126,8 @@ fn point(compiler: &Compiler<'_>, module: &mut Module, index: usize, entry: Node
     let name = super::identifier(&compiler.graph.nodes[index].name);
     let b = &Builder::new(format!("{name}_of"), "A function of one signal.");
     let argument = Signal::certain(b.float_param("x"));
-    let arguments = Arguments::without_place(b, Arguments::parameters(b, compiler.graph));
+    let parameters = Arguments::parameters(b, compiler.graph);
+    let arguments = Arguments::without_place(b, compiler.graph, parameters);
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
     value_results(b, &lowered(&mut lower, index, entry, argument));
     b.finish(module)
@@ -147,7 +148,8 @@ fn part(
         g: Vec2([sd, b.float(0.0)]),
         ..Signal::certain(mean).with_range(chain.signal.range)
     };
-    let arguments = Arguments::without_place(b, Arguments::parameters(b, compiler.graph));
+    let parameters = Arguments::parameters(b, compiler.graph);
+    let arguments = Arguments::without_place(b, compiler.graph, parameters);
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Local), arguments);
     let bundle = lowered(&mut lower, index, chain.entry, x);
     for (i, signal) in bundle.iter().enumerate() {

@@ -120,6 +120,7 @@ impl<'b> Lower<'_, 'b> {
         over: &Widened<'b>,
         second: bool,
     ) -> Upstream<'b> {
+        self.reads_elsewhere = true;
         let zero = self.algebra.b.float(0.0);
         let input = node.input(port);
         let source = match input.source {

@@ -287,6 +287,33 @@ fn hostile_names_are_made_safe_and_unique() {
     }
 }
 
+#[test]
+fn a_graph_may_be_called_as_what_the_entry_points_hold() {
+    for name in [
+        "footprint",
+        "position",
+        "parameters",
+        "outputs",
+        "index",
+        "first",
+        "id",
+        "uv",
+        "xyz",
+    ] {
+        let b = &entry("entry");
+        let (_, [u, ..]) = footprint(b);
+        b.result("value", u);
+        let outputs = vec![port("value", GraphType::Float)];
+        let program = program(b, Module::default(), name, outputs);
+        for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
+            let shader = emit(&program, &Options { entry });
+            assert_valid(&shader.source);
+            let function = format!("fn {name}(footprint: Footprint");
+            assert!(shader.source.contains(&function), "{}", shader.source);
+        }
+    }
+}
+
 /// A pseudo-random function of many instructions over everything that came before.
 fn long_program(instructions: usize, seed: u32, near: u32) -> Program {
     let mut module = Module::default();

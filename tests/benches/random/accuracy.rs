@@ -1,0 +1,337 @@
+//! How far random graphs are from the truth.
+//!
+//! The truth of a pixel is the mean of two independent ones of 1024 samples, their own error that of
+//! the two against each other over √2. Errors are the root mean square over pixels and components, of
+//! what a display shows: limited to 0 to 1, and sRGB.
+
+use mipless::{Footprint, Method, Options, Texture};
+use mipless_runtime::srgb::srgb_from_linear;
+use mipless_tests::case::load;
+use mipless_tests::random::Random;
+use mipless_tests::random_graph::of_seed;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::f64::consts::{SQRT_2, TAU};
+use std::panic::{catch_unwind, set_hook};
+
+/// Pixels, in wavelengths.
+const BAND: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+/// The pixels of the frame far away, in wavelengths.
+const FAR: f64 = 64.0;
+/// Pixels of each size.
+const PIXELS: usize = 32;
+/// Samples of each of the two truths.
+const SAMPLES: u32 = 1024;
+/// A graph whose values spread less over its places shows nothing.
+const VISIBLE: f64 = 0.01;
+/// Graphs that are listed, the worst first.
+const LISTED: usize = 20;
+
+/// What is measured of a graph.
+struct Row {
+    seed: u64,
+    nodes: usize,
+    wavelength: f64,
+    auto: f64,
+    point: f64,
+    floor: f64,
+    /// |mean of `auto` − mean of the truth| over the far frame, the largest of the components.
+    bias: f64,
+}
+
+impl Row {
+    /// By how much `auto` is worse than `point`, beyond what the truth knows.
+    fn excess(&self) -> f64 {
+        self.auto - self.point - self.floor
+    }
+}
+
+enum Outcome {
+    Measured(Row),
+    /// It is the same everywhere, or white, or black.
+    Flat,
+    Panicked(u64),
+}
+
+/// Measures and prints.
+pub(super) fn measure(count: u64, first: u64) {
+    set_hook(Box::new(|_| {}));
+    let outcomes: Vec<Outcome> = (first..first + count)
+        .into_par_iter()
+        .map(|seed| {
+            let run = || {
+                let (graph, texture) = of_seed(seed);
+                let nodes = graph["nodes"].as_object().map_or(0, serde_json::Map::len);
+                row(&texture, seed, nodes).map_or(Outcome::Flat, Outcome::Measured)
+            };
+            catch_unwind(run).unwrap_or(Outcome::Panicked(seed))
+        })
+        .collect();
+    let panicked: Vec<u64> = (outcomes.iter())
+        .filter_map(|outcome| match outcome {
+            Outcome::Panicked(seed) => Some(*seed),
+            _ => None,
+        })
+        .collect();
+    let mut rows: Vec<Row> = (outcomes.into_iter())
+        .filter_map(|outcome| match outcome {
+            Outcome::Measured(row) => Some(row),
+            _ => None,
+        })
+        .collect();
+    rows.sort_by(|a, b| b.excess().total_cmp(&a.excess()));
+    summary(count, &panicked, &rows);
+    let worse: Vec<&Row> = rows.iter().filter(|row| row.excess() > 0.0).collect();
+    let suspects: Vec<String> = (worse.par_iter().take(2 * LISTED))
+        .map(|row| catch_unwind(|| suspect(row)).unwrap_or_else(|_| "a panic".to_owned()))
+        .collect();
+    println!("\n| seed | nodes | wavelength | auto | point | floor | far bias | suspected |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for (row, suspect) in worse.iter().zip(&suspects).take(LISTED) {
+        println!(
+            "| {} | {} | {:.2e} | {:.4} | {:.4} | {:.4} | {:.4} | {suspect} |",
+            row.seed, row.nodes, row.wavelength, row.auto, row.point, row.floor, row.bias
+        );
+    }
+    let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
+    for suspect in &suspects {
+        let kind = suspect.split(" (").nth(1).unwrap_or(suspect);
+        *kinds.entry(kind.trim_end_matches(')')).or_default() += 1;
+    }
+    let mut kinds: Vec<(&str, usize)> = kinds.into_iter().collect();
+    kinds.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+    let kinds: Vec<String> = (kinds.iter())
+        .map(|(kind, count)| format!("{kind} {count}"))
+        .collect();
+    println!(
+        "\nSuspected in the worst {}: {}",
+        suspects.len(),
+        kinds.join(", ")
+    );
+}
+
+fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
+    let worse = rows.iter().filter(|row| row.excess() > 0.0).count();
+    let clearly = rows.iter().filter(|row| row.excess() > 0.005).count();
+    let bad = rows.iter().filter(|row| row.auto > 0.05).count();
+    let quantile = |of: &dyn Fn(&Row) -> f64, share: f64| {
+        let mut values: Vec<f64> = rows.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        let place = share * (values.len().max(1) - 1) as f64;
+        values.get(place.round() as usize).copied().unwrap_or(0.0)
+    };
+    println!("{count} graphs, of which {} show something", rows.len());
+    println!("panics: {} {panicked:?}", panicked.len());
+    println!("`auto` worse than `point` by more than the floor: {worse}; by 0.005 more: {clearly}");
+    println!("`auto` above 0.05: {bad}");
+    println!("\n| | median | 95 % | worst |\n|---|---|---|---|");
+    let columns: [(&str, &dyn Fn(&Row) -> f64); 4] = [
+        ("auto", &|row| row.auto),
+        ("point", &|row| row.point),
+        ("floor", &|row| row.floor),
+        ("bias of the far mean", &|row| row.bias),
+    ];
+    for (name, of) in columns {
+        let [median, most, worst] = [0.5, 0.95, 1.0].map(|share| quantile(of, share));
+        println!("| {name} | {median:.4} | {most:.4} | {worst:.4} |");
+    }
+}
+
+fn at(x: f64, y: f64) -> Footprint {
+    Footprint {
+        cell: [x, y].map(|x| x.floor() as i32),
+        uv: [x, y].map(|x| (x - x.floor()) as f32),
+        ..Footprint::default()
+    }
+}
+
+fn shown(values: Vec<Vec<f32>>) -> Vec<Vec<f64>> {
+    let of = |values: Vec<f32>| {
+        let show = |x: f32| f64::from(srgb_from_linear(x));
+        values.into_iter().map(show).collect()
+    };
+    values.into_iter().map(of).collect()
+}
+
+fn evaluate(texture: &Texture, method: Method, seed: u32, at: &[Footprint]) -> Vec<Vec<f32>> {
+    let options = Options {
+        method,
+        seed,
+        ..Options::default()
+    };
+    texture.evaluator(&options).evaluate(at)
+}
+
+/// Mean and variance over all components together, each about its own mean.
+fn variance(values: &[Vec<f64>]) -> f64 {
+    let of = |values: &Vec<f64>| {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n
+    };
+    values.iter().map(of).sum::<f64>() / values.len() as f64
+}
+
+fn rms(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (a, b)| {
+        (sum + (a - b).powi(2), count + 1.0)
+    });
+    (sum / f64::max(count, 1.0)).sqrt()
+}
+
+/// The wavelength of what a graph shows: six times the least distance at which its values are
+/// correlated by a half, as a cosine's are at a sixth of its wavelength. `None` if it shows nothing.
+fn wavelength(texture: &Texture) -> Option<f64> {
+    let mut random = Random::new(3);
+    let places: Vec<([f64; 2], f64)> = (0..384)
+        .map(|_| {
+            let place = [0, 1].map(|_| random.within(-8.0, 8.0));
+            (place, TAU * random.unit())
+        })
+        .collect();
+    let values = |distance: f64| {
+        let moved: Vec<Footprint> = (places.iter())
+            .map(|([x, y], angle)| at(x + distance * angle.cos(), y + distance * angle.sin()))
+            .collect();
+        shown(evaluate(texture, Method::Point, 0, &moved))
+    };
+    let start = values(0.0);
+    let spread = variance(&start);
+    if spread.sqrt() < VISIBLE {
+        return None;
+    }
+    let distances = (-28..=6).map(|k| 2.0_f64.powf(0.5 * f64::from(k)));
+    let half = distances
+        .map(|distance| (distance, rms(&start, &values(distance)).powi(2)))
+        .find(|&(_, difference)| difference >= spread);
+    Some(half.map_or(8.0, |(distance, _)| 6.0 * distance))
+}
+
+/// Pixels of some sizes at random places, a third of them eight times as long as wide and askew.
+fn pixels(sizes: &[f64], wavelength: f64) -> Vec<Footprint> {
+    let mut random = Random::new(4);
+    let mut all = Vec::new();
+    for size in sizes {
+        let size = (size * wavelength) as f32;
+        for pixel in 0..PIXELS {
+            let reach = 20.0 * wavelength.max(0.4);
+            let [x, y] = [0, 1].map(|_| random.within(-reach, reach));
+            let (du, dv) = if pixel % 3 == 2 {
+                let narrow = size / 8.0;
+                ([0.8 * size, 0.6 * size], [-0.6 * narrow, 0.8 * narrow])
+            } else {
+                ([size, 0.0], [0.0, size])
+            };
+            all.push(Footprint { du, dv, ..at(x, y) });
+        }
+    }
+    all
+}
+
+/// Two independent truths.
+fn truths(texture: &Texture, samples: u32, pixels: &[Footprint]) -> [Vec<Vec<f32>>; 2] {
+    [1, 2].map(|seed| evaluate(texture, Method::Supersample(samples), seed, pixels))
+}
+
+fn mean([a, b]: &[Vec<Vec<f64>>; 2]) -> Vec<Vec<f64>> {
+    let of = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
+    a.iter().zip(b).map(of).collect()
+}
+
+fn row(texture: &Texture, seed: u64, nodes: usize) -> Option<Row> {
+    let wavelength = wavelength(texture)?;
+    let band = pixels(&BAND, wavelength);
+    let truths_shown = truths(texture, SAMPLES, &band).map(shown);
+    let truth = mean(&truths_shown);
+    let error = |method| rms(&shown(evaluate(texture, method, 0, &band)), &truth);
+
+    let frame = pixels(&[FAR, FAR], wavelength);
+    let far_truth = mean(&truths(texture, SAMPLES, &frame).map(shown));
+    let far = shown(evaluate(texture, Method::Auto, 0, &frame));
+    let average = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+    let biases = (far.iter().zip(&far_truth)).map(|(a, b)| (average(a) - average(b)).abs());
+    Some(Row {
+        seed,
+        nodes,
+        wavelength,
+        auto: error(Method::Auto),
+        point: error(Method::Point),
+        floor: rms(&truths_shown[0], &truths_shown[1]) / SQRT_2,
+        bias: biases.fold(0.0, f64::max),
+    })
+}
+
+/// The node whose error exceeds those of its inputs most, each relative to the spread of its values.
+fn suspect(row: &Row) -> String {
+    let (graph, _) = of_seed(row.seed);
+    let nodes = graph["nodes"].as_object().expect("nodes");
+    let mut errors: BTreeMap<String, f64> = BTreeMap::new();
+    let band = pixels(&BAND, row.wavelength);
+    for name in nodes.keys() {
+        let error = of_node(&graph, name, &band).unwrap_or(0.0);
+        errors.insert(name.clone(), error);
+    }
+    let excess = |name: &String| {
+        let inputs = nodes[name]["inputs"].as_object();
+        let inputs = inputs.into_iter().flat_map(serde_json::Map::values);
+        let before = inputs
+            .filter_map(|input| errors.get(input.get("node")?.as_str()?))
+            .fold(0.0_f64, |most, &error| most.max(error));
+        errors[name] - before
+    };
+    let names = nodes.keys().filter(|name| is_read(&graph, name));
+    let worst = names.max_by(|a, b| excess(a).total_cmp(&excess(b)));
+    worst.map_or_else(String::new, |name| {
+        let ty = nodes[name]["type"].as_str().unwrap_or("?");
+        format!("{name} ({ty})")
+    })
+}
+
+/// Whether an output depends on a node.
+fn is_read(graph: &Value, name: &str) -> bool {
+    let mut stack: Vec<&str> = vec![name];
+    let mut seen = Vec::new();
+    let reads = |value: &Value, node: &str| value.get("node").is_some_and(|n| n == node);
+    while let Some(node) = stack.pop() {
+        let outputs = graph["outputs"].as_object().expect("outputs");
+        if outputs.values().any(|output| reads(output, node)) {
+            return true;
+        }
+        for (reader, entry) in graph["nodes"].as_object().expect("nodes") {
+            let inputs = entry["inputs"].as_object();
+            let mut inputs = inputs.into_iter().flat_map(serde_json::Map::values);
+            if !seen.contains(&reader) && inputs.any(|input| reads(input, node)) {
+                seen.push(reader);
+                stack.push(reader);
+            }
+        }
+    }
+    false
+}
+
+/// The error of one node's output, relative to the spread of its values.
+fn of_node(graph: &Value, name: &str, band: &[Footprint]) -> Option<f64> {
+    let mut alone = graph.clone();
+    let ty = alone["nodes"][name]["type"].as_str()?;
+    let output = match ty.strip_prefix("graph:") {
+        Some(sub) => alone["graphs"][sub]["outputs"]
+            .as_object()?
+            .keys()
+            .next()?
+            .clone(),
+        None => "out".to_owned(),
+    };
+    alone["outputs"] = json!({ "out": { "node": name, "output": output } });
+    let texture = load(&alone.to_string()).ok()?;
+    let exact = |values: Vec<Vec<f32>>| -> Vec<Vec<f64>> {
+        let of = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
+        values.into_iter().map(of).collect()
+    };
+    let spread = variance(&exact(evaluate(&texture, Method::Point, 0, band))).sqrt();
+    let truth = mean(&truths(&texture, 128, band).map(exact));
+    let found = exact(evaluate(&texture, Method::Auto, 0, band));
+    let error = rms(&found, &truth) / spread.max(1e-6);
+    error.is_finite().then_some(error)
+}
