@@ -7,6 +7,7 @@
 mod ahead;
 mod arguments;
 mod audit;
+mod bands;
 mod entry;
 mod finish;
 mod function;

@@ -2,7 +2,7 @@
 //! footprints, and what is worse than no filter is sampled.
 //!
 //! The closed forms are exact for what they are made for; a stranger's graph may be something else.
-//! So the program is evaluated on the CPU for [`BANDS`] sizes of pixels at a few places, and held
+//! So the program is evaluated on the CPU for [`Bands::COUNT`] sizes of pixels at a few places, and held
 //! against means of many points. Where an output is further off than a point, or by more than
 //! a tolerance, ways are tried one after the other:
 //!
@@ -15,27 +15,26 @@
 //! alone, and is remembered by its shape ([`super::shape`]): an edit that changes nothing that
 //! matters costs nothing.
 
+mod extent;
 mod suspects;
 mod truth;
 mod verdict;
 
-use super::sampled::{BANDS, Sampling, size_of};
+use super::bands::Bands;
+use super::sampled::Sampling;
 use super::shape::{Shape, shape};
 use super::torus::Repeated;
-use super::{Compiler, Facts, NodeDef, Options, program};
+use super::{Compiler, Facts, Method, NodeDef, Options, program};
 use crate::ir::Program;
 use mipless_graph::{Checked, Class, Graph, NodeId};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 use suspects::{beginnings, ends, repeated, steady};
-use truth::{Errors, GLANCE, LOOK, Truth, values};
+use truth::{Errors, GLANCE, LOOK, Truth, footprints, values};
 use verdict::{Verdict, where_better};
 
 /// The most graphs that a process remembers.
 const MOST: usize = 1024;
-
-/// All bands.
-const EVERYWHERE: [usize; 2] = [0, BANDS - 1];
 
 /// What an audit has found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -181,14 +180,22 @@ fn decide(
     facts: &mut Facts,
 ) -> (Program, Decision) {
     let graph = checked.graph();
-    let glance = Truth::of(GLANCE, graph, catalogue, options, facts);
+    let point = Options {
+        method: Method::Point,
+        moments: false,
+        ..*options
+    };
+    let (bands, distance) = extent::bands(&program(graph, catalogue, &point, facts));
+    let footprints = &*footprints(bands, distance);
+    let at = (bands, footprints);
+    let glance = Truth::of(GLANCE, at, graph, catalogue, options, facts);
     let closed = program(graph, catalogue, options, facts);
-    let found = values(&closed);
+    let found = values(&closed, footprints);
     let errors = glance.errors(&found);
     let point = glance.errors(&glance.point);
     if Verdict::of(&errors, &point, &glance.floor()).is_good() {
         let audit = Audit {
-            outputs: audited_outputs(&point, &errors, &errors),
+            outputs: audited_outputs(bands, &point, &errors, &errors),
             ..Audit::default()
         };
         let decision = Decision {
@@ -197,13 +204,13 @@ fn decide(
         };
         return (closed, decision);
     }
-    let truth = Truth::of(LOOK, graph, catalogue, options, facts);
+    let truth = Truth::of(LOOK, at, graph, catalogue, options, facts);
     let (point, floor) = (truth.errors(&truth.point), truth.floor());
     let verdict = |errors: &Errors| Verdict::of(errors, &point, &floor);
     let candidate = |facts: &Facts| {
         let program = program(graph, catalogue, options, facts);
         Candidate {
-            errors: truth.errors(&values(&program)),
+            errors: truth.errors(&values(&program, footprints)),
             program,
             sampled: facts.sampled.clone(),
             repeated: facts.repeated.clone(),
@@ -218,12 +225,12 @@ fn decide(
     };
 
     if !verdict(&best.errors).is_good() {
-        facts.repeated = repeated(checked, catalogue, options, facts);
+        facts.repeated = repeated(bands, checked, catalogue, options, facts);
         if !facts.repeated.is_empty() {
             let maps = candidate(facts);
-            if let Some(bands) = where_better(&maps.errors, &best.errors) {
+            if let Some(within) = where_better(&maps.errors, &best.errors) {
                 for repeated in facts.repeated.values_mut() {
-                    repeated.bands = bands;
+                    repeated.within = within;
                 }
                 let maps = candidate(facts);
                 if verdict(&maps.errors).beats(verdict(&best.errors)) {
@@ -241,18 +248,18 @@ fn decide(
         facts.sampled = FxHashMap::default();
         let steady = steady(graph);
         facts.sampled = match by {
-            Points::AtBeginnings => beginnings(graph, catalogue, options, facts, &steady),
+            Points::AtBeginnings => beginnings(at, graph, catalogue, options, facts, &steady),
             Points::AtEnds => ends(graph, &truth, [&without, &point, &floor], &steady),
         };
         if facts.sampled.is_empty() {
             continue;
         }
         let everywhere = candidate(facts);
-        let Some(bands) = where_better(&everywhere.errors, &without) else {
+        let Some(within) = where_better(&everywhere.errors, &without) else {
             continue;
         };
         for sampling in facts.sampled.values_mut() {
-            sampling.bands = bands;
+            sampling.within = within;
         }
         let points = candidate(facts);
         if verdict(&points.errors).beats(verdict(&best.errors)) {
@@ -261,19 +268,19 @@ fn decide(
     }
     facts.sampled.clone_from(&best.sampled);
 
-    let sampled = (best.sampled.iter()).map(|(&node, by)| (node, Remedy::Sampled, by.bands));
-    let repeated = (best.repeated.iter()).map(|(&node, by)| (node, Remedy::Repeated, by.bands));
+    let sampled = (best.sampled.iter()).map(|(&node, by)| (node, Remedy::Sampled, by.within));
+    let repeated = (best.repeated.iter()).map(|(&node, by)| (node, Remedy::Repeated, by.within));
     let mut replaced: Vec<Replaced> = sampled
         .chain(repeated)
-        .map(|(node, remedy, bands)| Replaced {
+        .map(|(node, remedy, within)| Replaced {
             node: NodeId(node as u32),
             remedy,
-            sizes: sizes(bands),
+            sizes: bands.sizes(within),
         })
         .collect();
     replaced.sort_by_key(|replaced| (replaced.node, replaced.remedy == Remedy::Sampled));
     let audit = Audit {
-        outputs: audited_outputs(&point, &closed_errors, &best.errors),
+        outputs: audited_outputs(bands, &point, &closed_errors, &best.errors),
         replaced,
     };
     let decision = Decision {
@@ -284,25 +291,15 @@ fn decide(
     (best.program, decision)
 }
 
-/// From which to which size of pixel bands reach.
-fn sizes([first, last]: [usize; 2]) -> [f32; 2] {
-    let low = if first == 0 {
-        0.0
-    } else {
-        0.5 * size_of(first)
-    };
-    let high = if last + 1 == BANDS {
-        f32::INFINITY
-    } else {
-        2.0 * size_of(last)
-    };
-    [low, high]
-}
-
 /// The errors of each output.
-fn audited_outputs(point: &Errors, closed: &Errors, auto: &Errors) -> Vec<AuditedOutput> {
+fn audited_outputs(
+    bands: Bands,
+    point: &Errors,
+    closed: &Errors,
+    auto: &Errors,
+) -> Vec<AuditedOutput> {
     let band = |output: usize, band: usize| AuditedBand {
-        size: size_of(band),
+        size: bands.size(band),
         point: point[output][band],
         closed: closed[output][band],
         auto: auto[output][band],
@@ -310,7 +307,7 @@ fn audited_outputs(point: &Errors, closed: &Errors, auto: &Errors) -> Vec<Audite
     (0..point.len())
         .map(|output| AuditedOutput {
             output,
-            bands: (0..BANDS).map(|i| band(output, i)).collect(),
+            bands: (0..Bands::COUNT).map(|i| band(output, i)).collect(),
         })
         .collect()
 }

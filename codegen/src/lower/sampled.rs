@@ -12,22 +12,17 @@
 //! of the true mean over places and N that of points within a footprint, as [`super::audit`]
 //! measures them.
 
+use super::bands::Bands;
 use super::fusion::region;
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::float::Float as _;
-use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Vec2};
+use crate::ir::{Builder, Float, FunctionRef, Module, Vec2};
 use crate::moments::{Algebra, Mode, Signal};
 use mipless_graph::Source;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// How many points there are.
 pub(super) const POINTS: usize = 7;
-/// How many bands of footprints are told apart.
-pub(super) const BANDS: usize = 7;
-/// The first band, as log₂ of the footprint's shorter axis in uv a pixel.
-const FINEST: i32 = -10;
-/// From one band to the next, in octaves.
-const OCTAVES: i32 = 2;
 /// How many turns of the hexagon there are.
 const TURNS: u32 = 64;
 
@@ -37,14 +32,11 @@ pub(super) struct Sampling {
     /// The mean of the texture, for each component.
     pub(super) far: Vec<f32>,
     /// The share of the points' deviation from it that is kept, in each band.
-    pub(super) kept: [f32; BANDS],
+    pub(super) kept: [f32; Bands::COUNT],
     /// The first and the last band where the node is sampled.
-    pub(super) bands: [usize; 2],
-}
-
-/// The shorter axis of the footprints of a band, in uv a pixel.
-pub(super) fn size_of(band: usize) -> f32 {
-    ((FINEST + OCTAVES * band as i32) as f32).exp2()
+    pub(super) within: [usize; 2],
+    /// The bands.
+    pub(super) bands: Bands,
 }
 
 impl<'g, 'b> Lower<'g, 'b> {
@@ -73,8 +65,8 @@ impl<'g, 'b> Lower<'g, 'b> {
         });
         let b = self.b();
         let place = self.arguments.clone();
-        let band = band(&place);
-        let within = within(band, sampling.bands);
+        let band = sampling.bands.of(&place);
+        let within = Bands::within(band, sampling.within);
         let everywhere = within.as_constant() == Some(true);
 
         let ([cell_x, cell_y], [u, v]) = (place.footprint.cell, place.footprint.fraction);
@@ -113,30 +105,6 @@ impl<'g, 'b> Lower<'g, 'b> {
             })
             .collect()
     }
-}
-
-/// Whether a footprint's band lies between two; what lies beyond the first or the last of all is
-/// theirs.
-pub(super) fn within<'b>(band: Float<'b>, [first, last]: [usize; 2]) -> Bool<'b> {
-    let mut within = band.builder().literal(true);
-    if first > 0 {
-        within = within & band.gt(first as f32 - 0.5);
-    }
-    if last + 1 < BANDS {
-        within = within & band.lt(last as f32 + 0.5);
-    }
-    within
-}
-
-/// In which band the footprint lies, counted from 0, as a real number: by its shorter axis.
-pub(super) fn band<'b>(place: &Arguments<'b>) -> Float<'b> {
-    let (right, down) = (place.footprint.right, place.footprint.down);
-    let area = (right[0] * down[1] - right[1] * down[0]).abs();
-    let squares = Vec2(right).norm2() + Vec2(down).norm2();
-    // For a round footprint its size; for a long one √2 times the shorter axis.
-    let size = area * std::f32::consts::SQRT_2 / squares.max(1e-30).sqrt();
-    let octaves = size.clamp(1e-12, 1e12).ln() * std::f32::consts::LOG2_E;
-    (octaves - FINEST as f32) * (1.0 / OCTAVES as f32)
 }
 
 /// What is summed over the points for one component: the value at the centre, and of the values'

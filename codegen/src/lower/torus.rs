@@ -1,12 +1,12 @@
 //! Functions of position that repeat, as maps on the torus: evaluated once over a period, they are
 //! filtered exactly for any footprint, whatever nodes they are built of.
 
+use super::bands::Bands;
 use super::fusion::region;
 use super::period::{Function, Periods, directions, periods, steps};
 use super::place::Place;
-use super::sampled::{band, within};
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
-use crate::ir::{Builder, FunctionRef, Module, Vec2};
+use crate::ir::{FOOTPRINT, FunctionRef, Module, Vec2};
 use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
 use mipless_graph::Source;
 use std::sync::{Arc, LazyLock};
@@ -26,7 +26,9 @@ const COMPONENTS: usize = 4;
 pub(super) struct Repeated {
     pub(super) periods: Periods,
     /// The first and the last band of footprints where it is read from a map.
-    pub(super) bands: [usize; 2],
+    pub(super) within: [usize; 2],
+    /// The bands.
+    pub(super) bands: Bands,
 }
 
 /// The periods of a node that depends on position alone, if it repeats along two directions.
@@ -36,21 +38,37 @@ pub(super) fn found(compiler: &Compiler<'_>, index: usize) -> Option<Periods> {
         return None;
     }
     let entry = |nodes: &[usize]| {
-        let mut module = Module::default();
-        let alone = compiler.with_options(compiler.options);
-        let b = &Builder::new("region", "Nodes at a point.");
-        let arguments = Arguments::declare(b, compiler.graph);
-        let mut lower = Lower::with(&alone, &mut module, Algebra::new(b, Mode::Point), arguments);
-        let bundle = values(&mut lower, &region, nodes);
-        value_results(b, &bundle);
-        b.finish(&mut module);
-        Function::new(&module)
+        Function::new(&alone(compiler, |compiler, module| {
+            let b = &compiler.builder("region", "Nodes at a point.");
+            let arguments = Arguments::of_place(Place::declare(b, &FOOTPRINT));
+            let algebra = Algebra::new(b, Mode::Point);
+            let mut lower = Lower::with(compiler, module, algebra, arguments);
+            let bundle = values(&mut lower, &region, nodes);
+            value_results(b, &bundle);
+            b.finish(module);
+        }))
     };
     let directions = directions(&mut entry(&region));
     if directions.is_empty() {
         return None;
     }
     periods(&mut entry(&[index]), &directions, &steps(compiler, &region))
+}
+
+/// A module of its own, to be evaluated while compiling.
+fn alone(compiler: &Compiler<'_>, build: impl FnOnce(&Compiler<'_>, &mut Module)) -> Module {
+    let Compiler {
+        graph,
+        facts,
+        catalogue,
+        options,
+        ..
+    } = *compiler;
+    let compiler = Compiler::new((graph, facts), catalogue, options);
+    let mut module = Module::default();
+    build(&compiler, &mut module);
+    compiler.library.link(&mut module);
+    module.pruned()
 }
 
 /// Lowers the nodes of a region, inputs first; the components of some of them.
@@ -76,9 +94,9 @@ impl<'b> Lower<'_, 'b> {
         let ranges: Vec<[f32; 2]> = closed.iter().map(|signal| signal.range).collect();
         let map = compiler.mapped(self.module, &format!("torus {index}"), |module| {
             let of = function(compiler, module, index, periods);
-            let mut alone = Module::default();
-            let other = compiler.with_options(compiler.options);
-            function(&other, &mut alone, index, periods);
+            let alone = alone(compiler, |compiler, module| {
+                function(compiler, module, index, periods);
+            });
             let grid: Grid = Arc::new(LazyLock::new(Box::new(move || {
                 super::map::sampled(&alone, DOMAIN)
             })));
@@ -98,7 +116,7 @@ impl<'b> Lower<'_, 'b> {
             parts.fold(first, |sum, part| sum + part)
         });
         let bundle = self.algebra.map([&place[0], &place[1]], &map);
-        let within = within(band(&self.arguments), repeated.bands);
+        let within = Bands::within(repeated.bands.of(&self.arguments), repeated.within);
         if within.as_constant() == Some(true) {
             return Some(bundle);
         }
@@ -118,7 +136,7 @@ fn function(
     [first, second]: Periods,
 ) -> FunctionRef {
     let name = super::identifier(&compiler.graph.nodes[index].name);
-    let b = &Builder::new(format!("{name}_of"), "A function that repeats.");
+    let b = &compiler.builder(format!("{name}_of"), "A function that repeats.");
     let p = Vec2(b.float_params(["x", "y"]));
     let at = [0, 1].map(|axis| {
         let row = [first[axis] as f32, second[axis] as f32].map(|x| b.float(x));

@@ -29,6 +29,7 @@ const VISIBLE: f64 = 0.01;
 const LISTED: usize = 20;
 
 /// What is measured of a graph.
+#[derive(Clone, Copy)]
 struct Row {
     seed: u64,
     nodes: usize,
@@ -82,17 +83,26 @@ pub(super) fn measure(count: u64, first: u64) {
         .collect();
     rows.sort_by(|a, b| b.excess().total_cmp(&a.excess()));
     summary(count, &panicked, &rows);
-    let worse: Vec<&Row> = rows.iter().filter(|row| row.excess() > 0.0).collect();
+    let worse: Vec<Row> = rows
+        .iter()
+        .filter(|row| row.excess() > 0.0)
+        .copied()
+        .collect();
     let suspects: Vec<String> = (worse.par_iter().take(2 * LISTED))
         .map(|row| catch_unwind(|| suspect(row)).unwrap_or_else(|_| "a panic".to_owned()))
         .collect();
-    println!("\n| seed | nodes | wavelength | auto | point | floor | far bias | suspected |");
-    println!("|---|---|---|---|---|---|---|---|");
+    header("worse than a point");
     for (row, suspect) in worse.iter().zip(&suspects).take(LISTED) {
-        println!(
-            "| {} | {} | {:.2e} | {:.4} | {:.4} | {:.4} | {:.4} | {suspect} |",
-            row.seed, row.nodes, row.wavelength, row.auto, row.point, row.floor, row.bias
-        );
+        line(row, suspect);
+    }
+    let orders: [(&str, fn(&Row) -> f64); 2] = [
+        ("the largest errors", |row| row.auto),
+        ("the largest biases far away", |row| row.bias),
+    ];
+    for (title, of) in orders {
+        rows.sort_by(|a, b| of(b).total_cmp(&of(a)));
+        header(title);
+        rows.iter().take(LISTED / 2).for_each(|row| line(row, ""));
     }
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for suspect in &suspects {
@@ -108,6 +118,20 @@ pub(super) fn measure(count: u64, first: u64) {
         "\nSuspected in the worst {}: {}",
         suspects.len(),
         kinds.join(", ")
+    );
+}
+
+fn header(title: &str) {
+    println!(
+        "\n{title}:\n\n| seed | nodes | wavelength | auto | point | floor | far bias | suspected |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+}
+
+fn line(row: &Row, suspect: &str) {
+    println!(
+        "| {} | {} | {:.2e} | {:.4} | {:.4} | {:.4} | {:.4} | {suspect} |",
+        row.seed, row.nodes, row.wavelength, row.auto, row.point, row.floor, row.bias
     );
 }
 

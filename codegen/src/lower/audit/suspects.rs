@@ -1,11 +1,12 @@
 //! What of a graph may be wrong, and what may take its place.
 
-use super::super::sampled::{BANDS, Sampling};
+use super::super::bands::Bands;
+use super::super::sampled::Sampling;
 use super::super::torus::{self, Repeated};
 use super::super::{Compiler, Facts, NodeDef, Options, program, symbols};
-use super::EVERYWHERE;
 use super::truth::{Errors, GLANCE, Truth, values};
 use super::verdict::{TOLERANCE, Verdict, is_worse};
+use crate::cpu::Footprint;
 use mipless_graph::{Checked, Class, Graph, NodeId, Output, Source, Type};
 use rustc_hash::FxHashMap;
 
@@ -26,6 +27,7 @@ pub(super) fn steady(graph: &Graph) -> Vec<bool> {
 
 /// The nodes whose own error is too large while those of their inputs are not.
 pub(super) fn beginnings(
+    (bands, footprints): (Bands, &[Footprint]),
     graph: &Graph,
     catalogue: &[NodeDef],
     options: &Options,
@@ -53,12 +55,22 @@ pub(super) fn beginnings(
         ..Facts::of(&every)
     };
     let facts = &facts;
-    let truth = Truth::of(GLANCE, &every, catalogue, options, facts);
+    let truth = Truth::of(
+        GLANCE,
+        (bands, footprints),
+        &every,
+        catalogue,
+        options,
+        facts,
+    );
     let (point, floor) = (truth.errors(&truth.point), truth.floor());
-    let closed = truth.errors(&values(&program(&every, catalogue, options, facts)));
+    let closed = truth.errors(&values(
+        &program(&every, catalogue, options, facts),
+        footprints,
+    ));
     let bad: FxHashMap<usize, bool> = (every.outputs.iter().enumerate())
         .map(|(output, of)| {
-            let bad = (0..BANDS).any(|band| {
+            let bad = (0..Bands::COUNT).any(|band| {
                 let [closed, point, floor] =
                     [&closed, &point, &floor].map(|errors| errors[output][band]);
                 closed > TOLERANCE || is_worse(closed, point, floor)
@@ -100,6 +112,7 @@ pub(super) fn ends(
 }
 /// The periods of what depends on position alone, as far as anything does.
 pub(super) fn repeated(
+    bands: Bands,
     checked: &Checked,
     catalogue: &[NodeDef],
     options: &Options,
@@ -123,7 +136,8 @@ pub(super) fn repeated(
         .filter_map(|index| {
             let repeated = Repeated {
                 periods: torus::found(&compiler, index)?,
-                bands: EVERYWHERE,
+                within: Bands::ALL,
+                bands,
             };
             Some((index, repeated))
         })

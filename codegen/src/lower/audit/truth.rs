@@ -1,12 +1,11 @@
 //! What is right on a few footprints, and how far values are from it.
 
-use super::super::sampled::{BANDS, POINTS, Sampling, size_of};
+use super::super::bands::Bands;
+use super::super::sampled::{POINTS, Sampling};
 use super::super::{Facts, Method, NodeDef, Options, program};
-use super::EVERYWHERE;
 use crate::cpu::{Evaluator, Footprint, Scratch};
 use crate::ir::Program;
 use mipless_graph::Graph;
-use std::sync::LazyLock;
 
 /// Places of each size of footprint: the round ones, and the long ones askew.
 const ROUND: usize = 24;
@@ -20,20 +19,20 @@ const ASKEW: [[f32; 2]; 4] = [[0.8, 0.6], [-0.6, 0.8], [0.96, -0.28], [0.352, 0.
 pub(super) const GLANCE: u32 = 128;
 pub(super) const LOOK: u32 = 1024;
 
-/// The footprints at which graphs are audited, band after band.
-static FOOTPRINTS: LazyLock<Vec<Footprint>> = LazyLock::new(|| {
+/// The footprints at which a graph is audited, band after band: most of them in the unit square,
+/// every fourth within a distance from it.
+pub(super) fn footprints(bands: Bands, distance: f64) -> Vec<Footprint> {
     let mut footprints = Vec::new();
-    for band in 0..BANDS {
-        let size = size_of(band);
+    for band in 0..Bands::COUNT {
+        let size = bands.size(band);
         for place in 0..PLACES {
-            // The R2 sequence (Roberts 2018), in the unit square, and every fourth place anywhere.
+            // The R2 sequence (Roberts 2018).
             let number = (band * PLACES + place + 1) as f64;
             let at = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2]
                 .map(|step| (0.5 + number * step).fract());
-            let at = if place % 4 == 3 {
-                at.map(|x| 32.0 * x - 16.0)
-            } else {
-                at
+            let at = match place % 4 {
+                3 => at.map(|x| distance * (2.0 * x - 1.0)),
+                _ => at,
             };
             let (long, [cos, sin]) = match place {
                 0..ROUND => (1.0, [1.0, 0.0]),
@@ -48,24 +47,28 @@ static FOOTPRINTS: LazyLock<Vec<Footprint>> = LazyLock::new(|| {
         }
     }
     footprints
-});
+}
 
-/// The values of a program's results at [`FOOTPRINTS`].
-pub(super) fn values(program: &Program) -> Vec<Vec<f32>> {
-    let parameters: Vec<f32> = (program.interface.parameters.iter())
+/// The defaults of a program's parameters.
+pub(super) fn parameters(program: &Program) -> Vec<f32> {
+    (program.interface.parameters.iter())
         .flat_map(|parameter| parameter.default.iter().copied())
-        .collect();
+        .collect()
+}
+
+/// The values of a program's results at footprints.
+pub(super) fn values(program: &Program, footprints: &[Footprint]) -> Vec<Vec<f32>> {
     let mut values = Vec::new();
     Evaluator::<f32>::of_program(program).evaluate_footprints(
         &mut Scratch::new(),
-        &FOOTPRINTS,
-        &parameters,
+        footprints,
+        &parameters(program),
         &mut values,
     );
     values
 }
 
-/// What is right at [`FOOTPRINTS`], for the components of all outputs.
+/// What is right at footprints, for the components of all outputs.
 pub(super) struct Truth {
     mean: Vec<Vec<f32>>,
     /// The variance of points within a footprint.
@@ -75,14 +78,16 @@ pub(super) struct Truth {
     outputs: Vec<[usize; 2]>,
     /// How many points there are in a pixel.
     samples: u32,
+    bands: Bands,
 }
 
 /// Of each output, its errors by band.
-pub(super) type Errors = Vec<[f64; BANDS]>;
+pub(super) type Errors = Vec<[f64; Bands::COUNT]>;
 
 impl Truth {
     pub(super) fn of(
         samples: u32,
+        (bands, footprints): (Bands, &[Footprint]),
         graph: &Graph,
         catalogue: &[NodeDef],
         options: &Options,
@@ -94,7 +99,7 @@ impl Truth {
                 moments,
                 ..*options
             };
-            values(&program(graph, catalogue, &options, facts))
+            values(&program(graph, catalogue, &options, facts), footprints)
         };
         let mut mean = with(Method::Supersample(samples), true);
         let variance = mean.split_off(mean.len() / 2);
@@ -112,6 +117,7 @@ impl Truth {
             point: with(Method::Point, false),
             outputs,
             samples,
+            bands,
         }
     }
 
@@ -176,13 +182,14 @@ impl Truth {
                 .map(|x| (1024.0 * x).round() as f32 / 1024.0)
                 .collect(),
             kept,
-            bands: EVERYWHERE,
+            within: Bands::ALL,
+            bands: self.bands,
         }
     }
 }
 
 /// A number as a display shows it, to both sides of 0: normals and heights are numbers too.
-fn displayed(x: f32) -> f64 {
+pub(super) fn displayed(x: f32) -> f64 {
     let size = f64::from(x.abs().min(1.0));
     let encoded = if size <= 0.003_130_8 {
         12.92 * size

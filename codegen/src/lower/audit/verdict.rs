@@ -1,6 +1,6 @@
 //! Which of two ways to filter a graph is better.
 
-use super::super::sampled::BANDS;
+use super::super::bands::Bands;
 use super::truth::Errors;
 
 /// How far off an output may be, root mean square over places, as a display shows it.
@@ -55,6 +55,6 @@ pub(super) fn where_better(other: &Errors, closed: &Errors) -> Option<[usize; 2]
         let matters = closed.iter().any(|errors| errors[*band] > NOTICEABLE);
         matters && square(other) < BETTER * square(closed)
     };
-    let bands: Vec<usize> = (0..BANDS).filter(better).collect();
+    let bands: Vec<usize> = (0..Bands::COUNT).filter(better).collect();
     Some([*bands.first()?, *bands.last()?])
 }
