@@ -29,7 +29,7 @@ use crate::ir::Program;
 use mipless_graph::{Checked, Class, Graph, NodeId};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
-use suspects::{beginnings, ends, repeated, steady};
+use suspects::{beginnings, ends, readers, repeated, steady};
 use truth::{Errors, GLANCE, LOOK, Truth, footprints, values};
 use verdict::{Verdict, where_better};
 
@@ -172,6 +172,17 @@ struct Candidate {
     repeated: FxHashMap<usize, Repeated>,
 }
 
+impl Candidate {
+    /// The other one if it is so much better that it is worth its time.
+    fn or(self, other: Self, verdict: impl Fn(&Errors) -> Verdict) -> Self {
+        if verdict(&other.errors).beats(verdict(&self.errors)) {
+            other
+        } else {
+            self
+        }
+    }
+}
+
 /// Compiles the graph, and decides what of it is sampled or read from maps.
 fn decide(
     checked: &Checked,
@@ -224,49 +235,37 @@ fn decide(
         repeated: FxHashMap::default(),
     };
 
+    let readers = readers(graph);
     if !verdict(&best.errors).is_good() {
         facts.repeated = repeated(bands, checked, catalogue, options, facts);
-        if !facts.repeated.is_empty() {
-            let maps = candidate(facts);
-            if let Some(within) = where_better(&maps.errors, &best.errors) {
-                for repeated in facts.repeated.values_mut() {
-                    repeated.within = within;
-                }
-                let maps = candidate(facts);
-                if verdict(&maps.errors).beats(verdict(&best.errors)) {
-                    best = maps;
-                }
-            }
-            facts.repeated.clone_from(&best.repeated);
-        }
+        let maps = candidate(facts).errors;
+        facts.repeated.retain(|node, repeated| {
+            repeated.within = where_better(&maps, &best.errors, &readers[*node]);
+            repeated.within != 0
+        });
+        best = best.or(candidate(facts), verdict);
+        facts.repeated.clone_from(&best.repeated);
     }
-    let without = best.errors.clone();
     for by in [Points::AtBeginnings, Points::AtEnds] {
         if verdict(&best.errors).is_good() {
             break;
         }
-        facts.sampled = FxHashMap::default();
         let steady = steady(graph);
-        facts.sampled = match by {
+        let mut added = match by {
             Points::AtBeginnings => beginnings(at, graph, catalogue, options, facts, &steady),
-            Points::AtEnds => ends(graph, &truth, [&without, &point, &floor], &steady),
+            Points::AtEnds => ends(graph, &truth, [&best.errors, &point, &floor], &steady),
         };
-        if facts.sampled.is_empty() {
-            continue;
-        }
-        let everywhere = candidate(facts);
-        let Some(within) = where_better(&everywhere.errors, &without) else {
-            continue;
-        };
-        for sampling in facts.sampled.values_mut() {
-            sampling.within = within;
-        }
-        let points = candidate(facts);
-        if verdict(&points.errors).beats(verdict(&best.errors)) {
-            best = points;
-        }
+        facts.sampled.extend(added.clone());
+        let everywhere = candidate(facts).errors;
+        added.retain(|node, sampling| {
+            sampling.within = where_better(&everywhere, &best.errors, &readers[*node]);
+            sampling.within != 0
+        });
+        facts.sampled.clone_from(&best.sampled);
+        facts.sampled.extend(added);
+        best = best.or(candidate(facts), verdict);
+        facts.sampled.clone_from(&best.sampled);
     }
-    facts.sampled.clone_from(&best.sampled);
 
     let sampled = (best.sampled.iter()).map(|(&node, by)| (node, Remedy::Sampled, by.within));
     let repeated = (best.repeated.iter()).map(|(&node, by)| (node, Remedy::Repeated, by.within));

@@ -15,17 +15,20 @@ pub(super) struct Bands {
 impl Bands {
     /// How many there are.
     pub(super) const COUNT: usize = 7;
-    /// All of them.
-    pub(super) const ALL: [usize; 2] = [0, Self::COUNT - 1];
+    /// All of them, as bits.
+    pub(super) const ALL: u32 = (1 << Self::COUNT) - 1;
 
     /// The width of a pixel of a band, in uv.
     pub(super) fn size(self, band: usize) -> f32 {
         ((self.finest + self.octaves * band as i32) as f32).exp2()
     }
 
-    /// From which to which width of a pixel bands reach; the first and the last of all reach on.
-    pub(super) fn sizes(self, [first, last]: [usize; 2]) -> [f32; 2] {
+    /// From which to which width of a pixel the bands of these bits reach, 0 and infinity where the
+    /// first or the last of all is among them: those reach on.
+    pub(super) fn sizes(self, bits: u32) -> [f32; 2] {
         let half = (0.5 * self.octaves as f32).exp2();
+        let first = bits.trailing_zeros() as usize;
+        let last = bits.checked_ilog2().unwrap_or(0) as usize;
         let low = match first {
             0 => 0.0,
             _ => self.size(first) / half,
@@ -50,16 +53,17 @@ impl Bands {
         (octaves - self.finest as f32) * (1.0 / self.octaves as f32)
     }
 
-    /// Whether a footprint's band lies between two; what lies beyond the first or the last of all is
-    /// theirs.
-    pub(super) fn within<'b>(band: Float<'b>, [first, last]: [usize; 2]) -> Bool<'b> {
-        let mut within = band.builder().literal(true);
-        if first > 0 {
-            within = within & band.gt(first as f32 - 0.5);
+    /// Whether a footprint's band is one of these bits; what lies beyond the first or the last of all
+    /// is theirs.
+    pub(super) fn within<'b>(band: Float<'b>, bits: u32) -> Bool<'b> {
+        if bits == Self::ALL {
+            return band.builder().literal(true);
         }
-        if last < Self::LAST {
-            within = within & band.lt(last as f32 + 0.5);
-        }
-        within
+        let nearest = (band + 0.5)
+            .clamp(0.0, Self::LAST as f32)
+            .to_int()
+            .to_uint();
+        let b = band.builder();
+        ((b.uint(bits) >> nearest) & 1u32).equals(1u32)
     }
 }

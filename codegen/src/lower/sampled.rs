@@ -33,8 +33,8 @@ pub(super) struct Sampling {
     pub(super) far: Vec<f32>,
     /// The share of the points' deviation from it that is kept, in each band.
     pub(super) kept: [f32; Bands::COUNT],
-    /// The first and the last band where the node is sampled.
-    pub(super) within: [usize; 2],
+    /// The bits of the bands where the node is sampled.
+    pub(super) within: u32,
     /// The bands.
     pub(super) bands: Bands,
 }

@@ -25,8 +25,8 @@ const COMPONENTS: usize = 4;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Repeated {
     pub(super) periods: Periods,
-    /// The first and the last band of footprints where it is read from a map.
-    pub(super) within: [usize; 2],
+    /// The bits of the bands of footprints where it is read from a map.
+    pub(super) within: u32,
     /// The bands.
     pub(super) bands: Bands,
 }

@@ -25,6 +25,27 @@ pub(super) fn steady(graph: &Graph) -> Vec<bool> {
     steady
 }
 
+/// Which outputs depend on each node.
+pub(super) fn readers(graph: &Graph) -> Vec<Vec<usize>> {
+    let mut readers: Vec<Vec<usize>> = vec![Vec::new(); graph.nodes.len()];
+    for (index, output) in graph.outputs.iter().enumerate() {
+        readers[output.node.index()].push(index);
+    }
+    for index in (0..graph.nodes.len()).rev() {
+        let own = std::mem::take(&mut readers[index]);
+        for input in &graph.nodes[index].inputs {
+            if let Source::Node(id) = input.source {
+                let of_input = &mut readers[id.index()];
+                of_input.extend(&own);
+                of_input.sort_unstable();
+                of_input.dedup();
+            }
+        }
+        readers[index] = own;
+    }
+    readers
+}
+
 /// The nodes whose own error is too large while those of their inputs are not.
 pub(super) fn beginnings(
     (bands, footprints): (Bands, &[Footprint]),
@@ -110,6 +131,7 @@ pub(super) fn ends(
         })
         .collect()
 }
+
 /// The periods of what depends on position alone, as far as anything does.
 pub(super) fn repeated(
     bands: Bands,

@@ -11,6 +11,8 @@ use mipless_graph::Graph;
 const ROUND: usize = 24;
 const LONG: usize = 8;
 const PLACES: usize = ROUND + LONG;
+/// The least width of a window, in pixels.
+const WINDOW: f64 = 32.0;
 /// How much longer the long ones are than wide.
 const RATIO: f32 = 8.0;
 /// Cosines and sines of their directions, the same numbers everywhere.
@@ -19,8 +21,8 @@ const ASKEW: [[f32; 2]; 4] = [[0.8, 0.6], [-0.6, 0.8], [0.96, -0.28], [0.352, 0.
 pub(super) const GLANCE: u32 = 128;
 pub(super) const LOOK: u32 = 1024;
 
-/// The footprints at which a graph is audited, band after band: most of them in the unit square,
-/// every fourth within a distance from it.
+/// The footprints at which a graph is audited, band after band: most of them in the unit square or,
+/// where pixels are large, in a window of so many of them; every fourth within a distance.
 pub(super) fn footprints(bands: Bands, distance: f64) -> Vec<Footprint> {
     let mut footprints = Vec::new();
     for band in 0..Bands::COUNT {
@@ -30,10 +32,11 @@ pub(super) fn footprints(bands: Bands, distance: f64) -> Vec<Footprint> {
             let number = (band * PLACES + place + 1) as f64;
             let at = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2]
                 .map(|step| (0.5 + number * step).fract());
-            let at = match place % 4 {
-                3 => at.map(|x| distance * (2.0 * x - 1.0)),
-                _ => at,
+            let extent = match place % 4 {
+                3 => distance.max(WINDOW * f64::from(size)),
+                _ => 0.5 * (WINDOW * f64::from(size)).max(1.0),
             };
+            let at = at.map(|x| 0.5 + extent * (2.0 * x - 1.0));
             let (long, [cos, sin]) = match place {
                 0..ROUND => (1.0, [1.0, 0.0]),
                 _ => (RATIO, ASKEW[place % ASKEW.len()]),
@@ -155,7 +158,11 @@ impl Truth {
     /// How an output is best sampled: see [`super::sampled`].
     pub(super) fn sampling(&self, output: usize, is_steady: bool) -> Sampling {
         let [start, end] = self.outputs[output];
-        let mean = |all: &[f32]| all.iter().map(|&x| f64::from(x)).sum::<f64>() / all.len() as f64;
+        // The largest footprints hold most of the texture.
+        let mean = |all: &[f32]| {
+            let largest = &all[(Bands::COUNT - 2) * PLACES..];
+            largest.iter().map(|&x| f64::from(x)).sum::<f64>() / largest.len() as f64
+        };
         let far: Vec<f64> = (start..end).map(|i| mean(&self.mean[i])).collect();
         let kept = std::array::from_fn(|band| {
             let pixels = band * PLACES..(band + 1) * PLACES;

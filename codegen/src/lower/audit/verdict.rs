@@ -47,14 +47,20 @@ pub(super) fn is_worse(error: f64, point: f64, floor: f64) -> bool {
     error > NOTICEABLE && error > point + floor
 }
 
-/// From the first band to the last one in which something else is better for the outputs, where it
+/// The bits of the bands in which something else is better for some of the outputs, where it
 /// matters.
-pub(super) fn where_better(other: &Errors, closed: &Errors) -> Option<[usize; 2]> {
+pub(super) fn where_better(other: &Errors, closed: &Errors, outputs: &[usize]) -> u32 {
     let better = |band: &usize| {
-        let square = |errors: &Errors| errors.iter().map(|e| e[*band] * e[*band]).sum::<f64>();
-        let matters = closed.iter().any(|errors| errors[*band] > NOTICEABLE);
+        let square = |errors: &Errors| {
+            let errors = outputs.iter().map(|&output| errors[output][*band].powi(2));
+            errors.sum::<f64>()
+        };
+        let matters = outputs
+            .iter()
+            .any(|&output| closed[output][*band] > NOTICEABLE);
         matters && square(other) < BETTER * square(closed)
     };
-    let bands: Vec<usize> = (0..Bands::COUNT).filter(better).collect();
-    Some([*bands.first()?, *bands.last()?])
+    (0..Bands::COUNT)
+        .filter(better)
+        .fold(0, |bits, band| bits | 1 << band)
 }
