@@ -12,9 +12,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Noise,
     summary: "A random number of [0, 1) in every cubic cell.",
     doc: Doc {
-        computes: "out = the random number of the cell ⌊frequency · position + ½⌋, uniform in [0, 1) and \
-            independent of the other cells'. The origin is in the middle of a cell: a surface at 0, as every \
-            flat one is, lies in one layer of cells, where MaterialX's would be half in each of two.",
+        computes: "out = the random number of the cell ⌊frequency · position + 1/1024⌋, uniform in [0, 1) and \
+            independent of the other cells'. The thousandth of a cell keeps a surface at 0, as every flat \
+            one is, in one layer of cells; on their faces, where MaterialX's lies, it would be half in each \
+            of two.",
         statistics: "Uniform: mean ½, variance 1/12, range [0, 1); not Gaussian (max |CDF − Φ| is \
             0.058), but the mean over several cells is. A footprint is a Gaussian on the surface, in \
             space one of covariance Σ of rank 2, and a cell weighs the probability of its box: mean, \

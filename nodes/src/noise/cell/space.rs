@@ -15,8 +15,9 @@ use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Sym2, Uint, Vec2, dot};
 use mipless_codegen::moments::{Mode, Signal};
 
-/// Where the origin lies in its cell, along each axis.
-pub(crate) const INSIDE: f32 = 0.5;
+/// How far inside its cell the origin lies along each axis: more than the rounding of a place, and less
+/// than anyone sees.
+const INSIDE: f32 = 1.0 / 1024.0;
 
 /// The filtered cells at a position in space, in cells.
 pub(crate) fn filtered<'b>(
