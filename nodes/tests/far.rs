@@ -185,3 +185,80 @@ fn sources_in_space_keep_their_detail_far_away() {
         hold(&format!("{node} {inputs}"), &json);
     }
 }
+
+/// Noises around a pivot, whose octaves leave what an f32 or an integer can hold.
+const STEEP: [(&str, &str); 7] = [
+    ("noise2d", ""),
+    ("noise2d", r#","kernel":"quintic""#),
+    ("valuenoise2d", ""),
+    ("fractal2d", r#","octaves":10,"lacunarity":8"#),
+    (
+        "fractal2d",
+        r#","octaves":10,"lacunarity":8,"kernel":"quintic""#,
+    ),
+    ("fractal3d", r#","octaves":10,"lacunarity":8"#),
+    (
+        "fractal3d",
+        r#","octaves":10,"lacunarity":8,"kernel":"quintic""#,
+    ),
+];
+
+#[test]
+fn no_size_and_no_place_takes_a_noise_from_its_pivot() {
+    const PIVOT: f64 = -3.7;
+    for (node, inputs) in STEEP {
+        let json = format!(
+            r#"{{"version":1,"name":"n","nodes":{{"n":{{"type":"{node}","inputs":{{"pivot":{PIVOT}{inputs}}}}}}},"outputs":{{"out":{{"node":"n"}}}}}}"#
+        );
+        for method in [Method::Point, Method::Ensemble, Method::Local, Method::Quad] {
+            let program = program(&json, method);
+            for exponent in -12..=11 {
+                let size = 10f32.powi(exponent);
+                let mut at = places([0; 3], size);
+                at.extend(places([1 << 30, -(1 << 30), i32::MAX - 8], size));
+                // Beyond what the cell of an integer holds.
+                at.extend(
+                    places([0; 3], size)
+                        .into_iter()
+                        .map(|(footprint, position)| {
+                            let far = Footprint {
+                                uv: [1e11, -3e20],
+                                ..footprint
+                            };
+                            let there = Position {
+                                xyz: [1e11, -3e20, 7e9],
+                                ..position
+                            };
+                            (far, there)
+                        }),
+                );
+                let found = evaluated::<f32>(&program, &at);
+                let what = format!("{node} {inputs} by {method} over {size:e}");
+                for (i, (mean, variance)) in found[0].iter().zip(&found[1]).enumerate() {
+                    let what = format!("{what} at {i}: {mean} ± √{variance}");
+                    assert!((mean - PIVOT).abs() < 2.5, "{what}: {mean}");
+                    assert!((0.0..0.5).contains(variance), "{what}: {variance}");
+                    if size >= 1e3 && method != Method::Point {
+                        assert!((mean - PIVOT).abs() < 1e-3, "{what}: {mean}");
+                        assert!(*variance > 0.04, "{what}: {variance}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_variance_beyond_the_largest_number_is_the_largest() {
+    let json = r#"{"version":1,"name":"n","nodes":{"n":{"type":"noise2d","inputs":
+        {"amplitude":1e20,"frequency":8,"pivot":0.5}}},"outputs":{"out":{"node":"n"}}}"#;
+    for method in [Method::Local, Method::Quad] {
+        let found = evaluated::<f32>(&program(json, method), &places([0; 3], 2.0));
+        assert!(
+            found[0].iter().all(|x| (x - 0.5).abs() < 1e-3),
+            "{:?}",
+            found[0]
+        );
+        assert!(found[1].iter().all(|x| *x > 9e37), "{:?}", found[1]);
+    }
+}

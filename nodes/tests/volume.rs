@@ -459,6 +459,23 @@ fn cells_are_filtered_as_those_of_a_plane() {
 }
 
 #[test]
+fn a_surface_at_0_lies_in_one_layer_of_cells() {
+    let json = graph(r#"{"type":"cellnoise3d"}"#);
+    let axes = [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0]];
+    let pixels: Vec<Position> = (positions(200).iter())
+        .map(|&[x, y, _]| at([x, y, 0.0], axes))
+        .collect();
+    let points = evaluate(&json, Method::Point, &pixels);
+    for method in [Method::Local, Method::Quad] {
+        let found = evaluate(&json, method, &pixels);
+        let off = |(found, point): &(&[f64; 2], &[f64; 2])| (found[0] - point[0]).abs() > 1e-3;
+        // Within 2.8 σ of an edge along either axis lies a place in nine.
+        let count = found.iter().zip(&points).filter(off).count();
+        assert!(count < 45, "{count} of 200 by {method}");
+    }
+}
+
+#[test]
 fn cells_are_uniform_and_repeat() {
     let flat = [[0.0; 3]; 2];
     let at_all = |places: &[[f64; 3]], axes| -> Vec<Position> {

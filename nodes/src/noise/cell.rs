@@ -11,7 +11,6 @@ pub(crate) mod place;
 pub(crate) mod space;
 
 use super::field::{Field, Spread};
-use super::hash::word;
 use super::period::wrapped;
 use line::Sums;
 use mipless_codegen::Lower;
@@ -31,10 +30,9 @@ const MOST: f32 = 24.0;
 /// No footprint is narrower, in squared cells.
 const NARROWEST: f32 = 1e-12;
 
-/// What the hashes of a row's cells share. It is mixed, since a column xor what is linear in the row
-/// would be the same for a cell 2³⁰ columns and rows further on, and for its reflection in some cell.
+/// What the hashes of a row's cells share.
 pub(crate) fn row_word<'b>(row: Int<'b>, seed: Uint<'b>, period: i32) -> Uint<'b> {
-    word(wrapped(row, period).to_uint() * 0x9e37_79b1 + seed)
+    wrapped(row, period).to_uint() * 0x9e37_79b1 + seed
 }
 
 /// The hash of a cell, given its row's word.

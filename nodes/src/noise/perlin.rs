@@ -23,7 +23,7 @@ use super::field::{Field, Spread};
 use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
 use super::remainder::{remainder, share};
 use super::sum::Octave;
-use super::sum::{Octaves, parts};
+use super::sum::{Octaves, footprint_scale, parts};
 use super::window::{count, start};
 use energy::{Footprint, energies};
 use fit::{Fit, Shape};
@@ -173,7 +173,7 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     let eigenvalues = b.float_params(["s_major", "s_minor"]);
 
     // The footprint in cells of this octave.
-    let area = state.scale.square().min(1e6);
+    let area = footprint_scale(state.scale, eigenvalues[0]);
     let [major, minor] = eigenvalues.map(|s| s * area);
     let footprint = Footprint {
         covariance: covariance * area,

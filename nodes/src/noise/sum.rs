@@ -127,6 +127,13 @@ impl Octaves {
     }
 }
 
+/// What squared spreads are multiplied by for an octave that is `scale` times as fine, of a footprint of
+/// the largest squared spread `spread`. Over 10⁴ cells every octave is gone, and squares of squares
+/// are finite; a limit on the scale alone would leave fine octaves unfiltered.
+pub(super) fn footprint_scale<'b>(scale: Float<'b>, spread: Float<'b>) -> Float<'b> {
+    scale.square().min(1e8 / (spread + 1e-20))
+}
+
 /// How many derivatives of the noise a mode needs.
 pub(super) fn derivatives(mode: Mode) -> usize {
     match mode {

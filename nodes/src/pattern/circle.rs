@@ -27,10 +27,11 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             − r)/edge limited to [0, 1]. MaterialX's node has no edge.",
         statistics: "The measure of a disc under the Gaussian of the footprint, chord by chord along the \
             footprint's minor axis: exact for any covariance. Variance P(1 − P). An edge adds the \
-            difference of a ramp and a step of the distance as a Gaussian: exact where the outline is \
-            straight over the ramp and the footprint, and where the footprint is large against the \
-            ramp.",
-        accuracy: "The mean is within 1e-3 for any footprint; with an edge of half the radius within 0.0065, and 0.023 at 8:1, the variance within 0.02. Held by `nodes/src/pattern/tests.rs` against \
+            difference of a ramp and a step of the distance as a Gaussian, with the mean and the variance \
+            that the distance from the centre has: exact where the outline is straight over the ramp and \
+            the footprint, and where the footprint is large against the ramp or the ramp against \
+            both.",
+        accuracy: "The mean is within 1e-3 for any footprint; with an edge of half the radius within 0.003, and 0.017 at 8:1, the variance within 0.02. Held by `nodes/src/pattern/tests.rs` against \
             dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. MaterialX \
             1.39, node `circle` of its standard library.",

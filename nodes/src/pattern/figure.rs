@@ -128,12 +128,19 @@ fn framed<'b>(origin: [Float<'b>; 2], [a, c, e]: &[[Float<'b>; 2]; 3]) -> Axes<'
 fn edge<'b>(lower: &mut Lower<'_, 'b>, figure: &Figure<'b>, back: [Float<'b>; 2]) -> Edge<'b> {
     match figure {
         Figure::Disc { radius } => Edge::of_disc(back, *radius),
-        Figure::Polygon { outline, axes } => Edge::of_polygon(lower, outline, framed(back, axes)),
+        Figure::Polygon { outline, axes } => {
+            let centre = Vec2(back).norm2().sqrt();
+            Edge::of_polygon(lower, outline, framed(back, axes), centre)
+        }
         Figure::Line {
             outline,
             axes,
             from,
-        } => Edge::of_polygon(lower, outline, framed(moved(back, *from), axes)),
+        } => {
+            let start = moved(back, *from);
+            let centre = aside(start, axes[2]).sqrt();
+            Edge::of_polygon(lower, outline, framed(start, axes), centre)
+        }
     }
 }
 

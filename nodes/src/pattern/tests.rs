@@ -358,6 +358,25 @@ fn soft_edges_have_nearly_their_means() {
 }
 
 #[test]
+fn an_edge_much_wider_than_its_figure_has_its_mean() {
+    // A thousandth of the rise lies in all of the footprint.
+    for (edge, bound) in [
+        (1000.0, [[1e-3; 2]; 2]),
+        (30.0, [[3e-3, 3e-3], [6e-3, 0.015]]),
+    ] {
+        let disc = json!({ "center": [0.4, 0.6], "radius": 0.4, "edge": edge });
+        held("circle", &disc, 1.0, bound);
+        held("shape", &json!({ "rotate": 20, "edge": edge }), 1.0, bound);
+        held(
+            "shape",
+            &json!({ "shape": "star", "edge": edge }),
+            1.0,
+            bound,
+        );
+    }
+}
+
+#[test]
 fn waves_are_filtered_exactly() {
     for shape in ["sine", "triangle", "saw", "square"] {
         let inputs = json!({ "shape": shape, "frequency": 1, "rotate": 25, "phase": 0.1 });

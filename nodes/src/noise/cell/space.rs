@@ -15,6 +15,10 @@ use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Sym2, Uint, Vec2, dot};
 use mipless_codegen::moments::{Mode, Signal};
 
+/// How far inside its cell the origin lies along each axis: more than the rounding of a place, and less
+/// than anyone sees.
+const INSIDE: f32 = 1.0 / 1024.0;
+
 /// The filtered cells at a position in space, in cells.
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
@@ -23,6 +27,10 @@ pub(crate) fn filtered<'b>(
     period: i32,
 ) -> Signal<'b> {
     let (mode, b) = (lower.mode(), lower.b());
+    // A surface at 0, as every flat view is, must not lie on faces of cells: half of a footprint would be
+    // in another layer at every size.
+    let position: Vec<Signal<'b>> = (position.iter()).map(|axis| axis.offset(INSIDE)).collect();
+    let position = &position[..];
     let spread = Spread::of(position, 1.0);
     report(lower, spread.size());
     let key = format!("cells in space {mode:?} {seed} {period}");

@@ -6,7 +6,7 @@ use super::row::{Frame, orders, row};
 use super::width::WIDTH;
 use crate::noise::remainder::share;
 use crate::noise::sum::Octave;
-use crate::noise::sum::{Octaves, derivatives};
+use crate::noise::sum::{Octaves, derivatives, footprint_scale};
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module};
 use mipless_codegen::moments::Mode;
 
@@ -47,7 +47,7 @@ pub(super) fn octave(module: &mut Module, mode: Mode, octaves: Octaves) -> Funct
     let [trace, determinant] = b.float_params(["trace", "determinant"]);
 
     // The footprint in cells of this octave. The rows are laid along its longer side.
-    let area = state.scale.square().min(1e6);
+    let area = footprint_scale(state.scale, trace);
     let [s_xx, s_xy, s_yy] = covariance.map(|s| s * area);
     let energy = Energy::new(trace * area, determinant * area.square());
     let swapped = s_yy.lt(s_xx);

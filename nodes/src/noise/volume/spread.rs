@@ -106,11 +106,11 @@ impl<'b> Spread<'b> {
     /// For a lattice `scale` times as fine.
     pub(super) fn scaled(&self, scale: Float<'b>) -> Self {
         let area = scale.square().min(WIDEST * WIDEST / (self.trace + 1e-12));
-        let area2 = area.square();
+        // Factor by factor: the cube of what scales a footprint of nothing is no number.
         Self {
             covariance: self.covariance.scaled(area),
-            adjugate: self.adjugate.scaled(area2),
-            determinant: self.determinant * (area2 * area),
+            adjugate: self.adjugate.scaled(area).scaled(area),
+            determinant: self.determinant * area * area * area,
             trace: self.trace * area,
         }
     }
