@@ -4,6 +4,7 @@ use crate::mistake::Mistake;
 use crate::plan;
 use crate::report::Report;
 use crate::scene::{self, writable};
+use crate::sources::Sources;
 use clap::Args;
 use mipless::{Method, Options};
 use mipless_graph::CheckOptions;
@@ -38,6 +39,9 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     let mut scene = arguments
         .scene
         .open(&CheckOptions::default(), default, report)?;
+    let mut read = Sources::default();
+    read.add_graph(&arguments.scene.graph, &scene.texture);
+    read.guard(&arguments.out)?;
 
     // The other methods do not sample, so that they share no points with the truth.
     let truth = scene.evaluate(&scene.options(TRUTH), report)?.mean;

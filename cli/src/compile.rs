@@ -3,6 +3,7 @@
 use crate::load::{self, allows_sampling};
 use crate::mistake::Mistake;
 use crate::report::Report;
+use crate::sources::Sources;
 use crate::value;
 use clap::{Args, ValueEnum};
 use mipless::target::{Manifest, Target, TranslateError, translate};
@@ -10,6 +11,7 @@ use mipless::wgsl::{self, Entry};
 use mipless::{Diagnostic, Method, Options, PixelFilter};
 use mipless_runtime::image_file::write_all;
 use serde_json::{Map, Value};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -88,13 +90,16 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     Ok(())
 }
 
+/// The most letters of a file's name that come from the graph's, which are ASCII.
+const LONGEST_STEM: usize = 200;
+
 /// What is done to every graph.
 struct Job<'a> {
     arguments: &'a Arguments,
     targets: Vec<Target>,
     entry: Entry,
-    /// The graphs themselves, which no output may replace.
-    graphs: Vec<PathBuf>,
+    /// The graphs and what they name, which no output may replace.
+    read: RefCell<Sources>,
 }
 
 impl<'a> Job<'a> {
@@ -118,15 +123,13 @@ impl<'a> Job<'a> {
             let message = format!("{}: it is no folder", arguments.out.display());
             return Err(Mistake::usage("unwritable-file", message));
         }
-        let graphs = arguments
-            .graphs
-            .iter()
-            .filter_map(|path| fs::canonicalize(path).ok());
+        let mut read = Sources::default();
+        arguments.graphs.iter().for_each(|path| read.add(path));
         Ok(Self {
             arguments,
             targets,
             entry,
-            graphs: graphs.collect(),
+            read: RefCell::new(read),
         })
     }
 
@@ -143,6 +146,7 @@ impl<'a> Job<'a> {
             ..
         } = self.arguments;
         let texture = load::load(path, &allows_sampling(*method), report)?;
+        self.read.borrow_mut().add_graph(path, &texture);
         let options = Options {
             method: *method,
             filter: *pixel_filter,
@@ -150,7 +154,8 @@ impl<'a> Job<'a> {
         };
         let program = texture.compile(&options);
         let shader = wgsl::emit(&program, &wgsl::Options { entry: self.entry });
-        let name = &shader.function;
+        // Folders take names of 255 bytes.
+        let name = &shader.function[..shader.function.len().min(LONGEST_STEM)];
 
         let mut files = Vec::new();
         let mut listed = Map::new();
@@ -210,12 +215,8 @@ impl<'a> Job<'a> {
         owners: &mut BTreeMap<PathBuf, PathBuf>,
     ) -> Result<(), Mistake> {
         for (file, _) in files {
-            let replaced = fs::canonicalize(file).ok();
-            if replaced.is_some_and(|file| self.graphs.contains(&file)) {
-                let message = format!("{} would replace a graph", file.display());
-                return Err(Mistake::usage("unwritable-file", message)
-                    .help("choose another folder with `--out`"));
-            }
+            let read = self.read.borrow().guard(file);
+            read.map_err(|mistake| mistake.help("choose another folder with `--out`"))?;
             if let Some(owner) = owners.get(file) {
                 let message = format!(
                     "{} and {} would both write {}",

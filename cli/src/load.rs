@@ -2,7 +2,7 @@
 
 use crate::mistake::{Mistake, Status};
 use crate::report::Report;
-use mipless::{Diagnostic, Folder, Method, Texture, name_of_file};
+use mipless::{Diagnostic, Files, Folder, Method, Texture, name_of_file};
 use mipless_graph::CheckOptions;
 use std::fs::File;
 use std::io::{self, Read};
@@ -25,7 +25,7 @@ pub(crate) fn load(
     report: &mut Report,
 ) -> Result<Texture, Mistake> {
     let text = read(path)?;
-    let texture = parse(path, &text, options)?;
+    let texture = parse(path, &text, options, report)?;
     warn(path, &texture, report);
     Ok(texture)
 }
@@ -38,11 +38,30 @@ pub(crate) fn warn(path: &Path, texture: &Texture, report: &mut Report) {
     }
 }
 
+/// The folder that files are named from; of standard input, the current one.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
 /// Checks the text of a graph.
-pub(crate) fn parse(path: &Path, text: &str, options: &CheckOptions) -> Result<Texture, Mistake> {
-    // What is read from standard input names files relative to the current folder.
-    let folder = Folder(path.parent().unwrap_or(Path::new("")).to_path_buf());
-    Texture::with_name(&name_of_file(path), text, options, &folder)
+pub(crate) fn parse(
+    path: &Path,
+    text: &str,
+    options: &CheckOptions,
+    report: &Report,
+) -> Result<Texture, Mistake> {
+    let folder = Folder(folder_of(path).to_path_buf());
+    let files: Box<dyn Files> = match report.root() {
+        Some(root) => Box::new(folder.within(root).map_err(|error| {
+            let message = format!("`--root {}`: {error}", root.display());
+            Mistake::usage("usage", message).help("name a folder that exists")
+        })?),
+        None => Box::new(folder),
+    };
+    Texture::with_name(&name_of_file(path), text, options, &*files)
         .map_err(|diagnostics| Mistake::graph(path, diagnostics))
 }
 

@@ -18,11 +18,13 @@ mod render;
 mod report;
 mod scene;
 mod schema;
+mod sources;
 mod trade;
 mod value;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use report::Report;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Procedural textures that filter themselves, from JSON node graphs.
@@ -40,6 +42,11 @@ struct Cli {
     /// Print the diagnostics and the results as one JSON object on standard output
     #[arg(long, global = true)]
     json: bool,
+
+    /// Refuse the pictures that graphs name outside of this folder, through symbolic links too
+    /// [default: any file may be named]
+    #[arg(long, global = true, value_name = "DIR")]
+    root: Option<PathBuf>,
 
     #[command(subcommand)]
     verb: Verb,
@@ -72,7 +79,7 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return report::usage(&error),
     };
-    let mut report = Report::new(cli.json);
+    let mut report = Report::new(cli.json, cli.root);
     let result = match &cli.verb {
         Verb::Render(arguments) => render::run(arguments, &mut report),
         Verb::Compare(arguments) => compare::run(arguments, &mut report),

@@ -5,6 +5,7 @@ use crate::mistake::Mistake;
 use crate::plan::{Plan, Wish};
 use crate::report::Report;
 use crate::scene::{self, Scene, writable};
+use crate::sources::{Sources, is_same};
 use crate::value;
 use clap::{Args, ValueEnum};
 use mipless::{Method, Options};
@@ -95,18 +96,22 @@ impl Arguments {
         let refused = |error| Mistake::usage("usage", error);
         let format = Format::of(&self.out, bits).map_err(refused)?;
         writable(&self.out)?;
+        let mut read = Sources::default();
+        read.add(&self.scene.graph);
+        read.guard(&self.out)?;
         if let Some(path) = &self.moments {
             if Format::of(path, Bits::Eight).map_err(refused)? != Format::Exr {
                 return Err(refused(image_file::FileError::Extension(path.clone()))
                     .help("moments need the range of .exr"));
             }
-            if *path == self.out {
+            if is_same(path, &self.out) {
                 return Err(Mistake::usage(
                     "usage",
                     "`--moments` and `-o` name the same file",
                 ));
             }
             writable(path)?;
+            read.guard(path)?;
         }
         if self.bits.is_some() && format == Format::Exr {
             report.warn(
@@ -124,6 +129,14 @@ impl Arguments {
         Ok(format)
     }
 
+    /// Refuses to write over a picture that the graph reads.
+    fn guard(&self, scene: &Scene) -> Result<(), Mistake> {
+        let mut read = Sources::default();
+        read.add_graph(&self.scene.graph, &scene.texture);
+        read.guard(&self.out)?;
+        self.moments.iter().try_for_each(|path| read.guard(path))
+    }
+
     /// The scene, and the method that was chosen for it, if it was to be chosen.
     fn prepare(&self, report: &mut Report) -> Result<(Scene, Option<Plan>), Mistake> {
         let default = Size::new(1280, 720);
@@ -131,10 +144,11 @@ impl Arguments {
             let scene = self
                 .scene
                 .open(&allows_sampling(self.method), default, report)?;
+            self.guard(&scene)?;
             return Ok((scene, None));
         };
         let text = load::read(&self.scene.graph)?;
-        let checked = load::parse(&self.scene.graph, &text, &CheckOptions::default());
+        let checked = load::parse(&self.scene.graph, &text, &CheckOptions::default(), report);
         // What has no statistics can still be sampled, if that is good or cheap enough.
         let (texture, filters) = match checked {
             Ok(texture) => (texture, true),
@@ -142,12 +156,13 @@ impl Arguments {
                 let options = CheckOptions {
                     allow_sampling: true,
                 };
-                let sampled = load::parse(&self.scene.graph, &text, &options);
+                let sampled = load::parse(&self.scene.graph, &text, &options, report);
                 (sampled.map_err(|_| mistake)?, false)
             }
         };
         load::warn(&self.scene.graph, &texture, report);
         let scene = self.scene.scene(texture, default)?;
+        self.guard(&scene)?;
         let plan = Plan::make(&scene, wish, filters, report)?;
         Ok((scene, Some(plan)))
     }

@@ -9,26 +9,34 @@ use mipless::Diagnostic;
 use serde_json::{Map, Value, json};
 use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Collects what is said, and the worst status.
 #[derive(Debug)]
 pub(crate) struct Report {
     json: bool,
+    root: Option<PathBuf>,
     status: Status,
     diagnostics: Vec<Value>,
     results: Map<String, Value>,
 }
 
 impl Report {
-    /// Nothing said yet.
-    pub(crate) fn new(json: bool) -> Self {
+    /// Nothing said yet, of a run whose graphs name no files outside of `root`.
+    pub(crate) fn new(json: bool, root: Option<PathBuf>) -> Self {
         Self {
             json,
+            root,
             status: Status::Done,
             diagnostics: Vec::new(),
             results: Map::new(),
         }
+    }
+
+    /// The folder outside of which no picture is read.
+    pub(crate) fn root(&self) -> Option<&Path> {
+        self.root.as_deref()
     }
 
     /// Whether tools listen.
@@ -139,7 +147,7 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     if wants_json && error.use_stderr() {
         let rendered = error.render().to_string();
         let message = rendered.trim().trim_start_matches("error: ");
-        let mut report = Report::new(true);
+        let mut report = Report::new(true, None);
         report
             .diagnostics
             .push(json!(Diagnostic::error("usage", message)));

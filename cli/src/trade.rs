@@ -4,6 +4,7 @@ use crate::mistake::Mistake;
 use crate::plan;
 use crate::report::Report;
 use crate::scene;
+use crate::sources::Sources;
 use crate::value;
 use clap::Args;
 use mipless::Method;
@@ -60,6 +61,12 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     let scene = arguments
         .scene
         .open(&CheckOptions::default(), default, report)?;
+    let (data, picture) = (out.join("trade.json"), out.join("trade.png"));
+    let mut read = Sources::default();
+    read.add_graph(&arguments.scene.graph, &scene.texture);
+    [&data, &picture]
+        .into_iter()
+        .try_for_each(|file| read.guard(file))?;
     let measured = plan::measured(&scene, &METHODS, PIXELS, report)?;
     let floor = measured.noise_floor;
     let best = front(&measured.methods);
@@ -111,7 +118,6 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
         marks: &marks,
     });
     let unwritable = |error: &dyn std::fmt::Display| Mistake::usage("unwritable-file", error);
-    let (data, picture) = (out.join("trade.json"), out.join("trade.png"));
     let bytes = encode(&picture, &chart, Format::Png(Bits::Eight)).map_err(|e| unwritable(&e))?;
     let files = [
         (data, format!("{found:#}\n").into_bytes()),

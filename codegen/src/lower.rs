@@ -38,7 +38,7 @@ use crate::ir::{Builder, Float, FunctionRef, Interface, Label, Library, Module, 
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use arguments::Arguments;
 use mipless_graph::{
-    Behaviour, Checked, Graph, InputView, Node, NodeSpec, Picture, Reach, Source, Type,
+    Behaviour, Checked, Graph, InputView, Node, NodeId, NodeSpec, Picture, Reach, Source, Type,
 };
 use rustc_hash::FxHashMap;
 use std::any::Any;
@@ -253,6 +253,8 @@ struct Compiler<'a> {
     tables: RefCell<FxHashMap<String, u32>>,
     /// The fused functions of nodes, sampled over their domains: one for each component.
     fused: RefCell<FxHashMap<usize, Samples>>,
+    /// The first region of each shape that is fused: its last node and its entry.
+    shapes: RefCell<FxHashMap<shape::Shape, (usize, NodeId)>>,
     /// What nodes have made of pictures, by its keys.
     made: RefCell<FxHashMap<String, Arc<dyn Any + Send + Sync>>>,
     /// The functions by tables that nodes share, by their keys.
@@ -282,6 +284,7 @@ impl<'a> Compiler<'a> {
             made: RefCell::default(),
             tabulated: RefCell::default(),
             fused: RefCell::default(),
+            shapes: RefCell::default(),
             maps: RefCell::default(),
             gains: RefCell::default(),
             library: Library::default(),

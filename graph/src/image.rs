@@ -84,6 +84,11 @@ impl Images {
         self.0.is_empty()
     }
 
+    /// What the graph calls them.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
     /// The picture that the graph calls `name`.
     pub fn get(&self, name: &str) -> Option<&Arc<Picture>> {
         self.0.get(name)

@@ -35,29 +35,81 @@ pub trait Files {
     fn read(&self, name: &str) -> io::Result<Vec<u8>>;
 }
 
-/// The files of a folder; names are relative to it, absolute ones are taken as they are.
+/// The files of a folder; names are relative to it, absolute ones are taken as they are, so that any
+/// file that the process can read may be named. [`Folder::within`] is for graphs of strangers.
 #[derive(Clone, Debug)]
 pub struct Folder(pub PathBuf);
 
+impl Folder {
+    /// The same files as far as they lie in `root`, wherever `..`, an absolute name or a symbolic
+    /// link leads; others have [`io::ErrorKind::PermissionDenied`].
+    ///
+    /// # Errors
+    /// If `root` is no folder, or cannot be looked at.
+    pub fn within(self, root: &Path) -> io::Result<Within> {
+        let root = fs::canonicalize(root)?;
+        if !root.is_dir() {
+            return Err(io::ErrorKind::NotADirectory.into());
+        }
+        Ok(Within { folder: self, root })
+    }
+}
+
+/// The files of a folder that lie in another one: see [`Folder::within`].
+#[derive(Clone, Debug)]
+pub struct Within {
+    folder: Folder,
+    root: PathBuf,
+}
+
+impl Files for Within {
+    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
+        let named = self.folder.0.join(name);
+        let denied = || {
+            let reason = format!("it lies outside of {}", self.root.display());
+            io::Error::new(io::ErrorKind::PermissionDenied, reason)
+        };
+        // Whether a file exists outside is nobody's business.
+        let path = fs::canonicalize(&named).map_err(|error| {
+            let folder = named
+                .parent()
+                .and_then(|folder| fs::canonicalize(folder).ok());
+            match folder {
+                Some(folder) if folder.starts_with(&self.root) => error,
+                _ => denied(),
+            }
+        })?;
+        if !path.starts_with(&self.root) {
+            return Err(denied());
+        }
+        // The place without links is what is read, whatever the name leads to by now.
+        read(&path)
+    }
+}
+
 impl Files for Folder {
     fn read(&self, name: &str) -> io::Result<Vec<u8>> {
-        let path = self.0.join(name);
-        let metadata = fs::metadata(&path)?;
-        if metadata.is_dir() {
-            return Err(io::ErrorKind::IsADirectory.into());
-        }
-        // A pipe might never end, and never begin.
-        if !metadata.is_file() {
-            return Err(io::Error::other("it is no regular file"));
-        }
-        let mut bytes = Vec::new();
-        let read = File::open(&path)?.take(LARGEST_FILE + 1);
-        io::BufReader::new(read).read_to_end(&mut bytes)?;
-        if bytes.len() as u64 > LARGEST_FILE {
-            return Err(io::ErrorKind::FileTooLarge.into());
-        }
-        Ok(bytes)
+        read(&self.0.join(name))
     }
+}
+
+/// The bytes of a regular file.
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    if metadata.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    // A pipe might never end, and never begin.
+    if !metadata.is_file() {
+        return Err(io::Error::other("it is no regular file"));
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path)?.take(LARGEST_FILE + 1);
+    io::BufReader::new(read).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(io::ErrorKind::FileTooLarge.into());
+    }
+    Ok(bytes)
 }
 
 /// No files: what a text without a place has.

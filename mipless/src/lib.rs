@@ -125,7 +125,7 @@ mod texture;
 
 pub use evaluator::{SetError, TextureEvaluator};
 pub use files::{
-    Files, Folder, LARGEST_FILE, LARGEST_PICTURE, LARGEST_SIDE, NoFiles, name_of_file,
+    Files, Folder, LARGEST_FILE, LARGEST_PICTURE, LARGEST_SIDE, NoFiles, Within, name_of_file,
 };
 pub use mipless_codegen::cpu::Footprint;
 pub use mipless_codegen::ir::Program;

@@ -12,7 +12,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// Half a float's largest number: what a picture's infinities become.
 const LARGEST_NUMBER: f32 = 65_504.0;
 
-/// A picture, and how many of its numbers were not finite: NaN became 0, infinities ±65504.
+/// The largest number of a picture, of which the fourth power is finite: what filters multiplies
+/// variances.
+const LARGEST_FINITE: f32 = 1e9;
+
+/// The most bytes of a profile, or of whatever else stands before the texels.
+const LARGEST_HEADER: u64 = 4 << 20;
+
+/// A picture, and how many of its numbers were replaced: NaN became 0, infinities ±65504,
+/// and what is larger than 1e9 that.
 #[derive(Debug)]
 pub(crate) struct Decoded {
     pub(crate) picture: Picture,
@@ -90,15 +98,21 @@ fn quantised(
     format: ImageFormat,
 ) -> Result<Decoded, PictureError> {
     let corrupt = |error: ::image::ImageError| PictureError::Corrupt(name, error.to_string());
-    let decoder = ImageReader::with_format(Cursor::new(bytes), format)
-        .into_decoder()
-        .map_err(corrupt)?;
+    if format == ImageFormat::Jpeg && !has_end(bytes) {
+        return Err(PictureError::Corrupt(name, "its end is missing".to_owned()));
+    }
+    let limits = |bytes: u64| {
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(bytes);
+        limits
+    };
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.limits(limits(LARGEST_HEADER));
+    let mut decoder = reader.into_decoder().map_err(corrupt)?;
     let (width, height) = decoder.dimensions();
     let size = checked(width.into(), height.into())?;
-    let mut decoder = decoder;
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(16 * LARGEST_PICTURE);
-    decoder.set_limits(limits).map_err(corrupt)?;
+    let most = 4 * decoder.total_bytes() + LARGEST_HEADER;
+    decoder.set_limits(limits(most)).map_err(corrupt)?;
     let image = DynamicImage::from_decoder(decoder).map_err(corrupt)?;
     let channels = u32::from(image.color().channel_count());
     let byte = |x: &u8| f32::from(*x) / 255.0;
@@ -121,6 +135,25 @@ fn quantised(
         picture: Picture::new(size, channels, true, numbers),
         replaced: 0,
     })
+}
+
+/// Whether the scans of a JPEG end with its mark: decoders fill up what is cut off. What stands before
+/// the first scan is skipped, for a preview has a mark of its own (ITU T.81, B.1.1).
+fn has_end(bytes: &[u8]) -> bool {
+    let mut at = 2;
+    while let Some(&[0xff, kind, high, low]) = bytes.get(at..at + 4) {
+        if kind == 0xff {
+            at += 1;
+            continue;
+        }
+        let length = usize::from(u16::from_be_bytes([high, low]));
+        at += 2 + length;
+        if kind == 0xda {
+            let scans = bytes.get(at..).unwrap_or_default();
+            return scans.windows(2).any(|pair| pair == [0xff, 0xd9]);
+        }
+    }
+    false
 }
 
 /// OpenEXR: linear numbers of 16 or 32 bits, of the first layer that holds an image.
@@ -179,13 +212,12 @@ fn floats(bytes: &[u8]) -> Result<Decoded, PictureError> {
             .step_by(chosen.len())
             .zip(samples)
         {
-            replaced += usize::from(!x.is_finite());
-            let x = if x.is_nan() { 0.0 } else { x };
-            *to = if x.is_finite() {
-                x
-            } else {
-                LARGEST_NUMBER.copysign(x)
+            *to = match x {
+                _ if x.is_nan() => 0.0,
+                _ if x.is_infinite() => LARGEST_NUMBER.copysign(x),
+                _ => x.clamp(-LARGEST_FINITE, LARGEST_FINITE),
             };
+            replaced += usize::from(*to != x);
         }
     }
     Ok(Decoded {

@@ -281,3 +281,160 @@ fn damaged_files_are_refused_or_read_but_never_a_panic() {
     }
     assert!(refused > 100, "{refused} damaged files are refused");
 }
+
+#[test]
+fn a_file_that_is_cut_off_is_a_located_mistake_wherever_it_is_cut() {
+    let noise: Vec<u8> = (0..24u8).map(|i| i.wrapping_mul(37)).collect();
+    // Behind the texels a PNG has twelve more bytes.
+    let originals = [
+        (png(&noise, ExtendedColorType::Rgb8), 12),
+        (jpeg(), 0),
+        (exr((0..8).map(|i| i as f32).collect(), false), 0),
+    ];
+    for (original, rest) in &originals {
+        for cut in 1..original.len() - rest {
+            let files = one("a", original[..cut].to_vec());
+            let mistakes = load(&graph("a", ""), &files).map(|_| cut);
+            let mistakes = mistakes.expect_err("a part of a picture");
+            assert!(
+                mistakes.iter().all(|m| m.line.is_some()),
+                "{cut}: {mistakes:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_preview_in_a_jpeg_does_not_end_it() {
+    let whole = jpeg();
+    // An APP1 segment with a preview of its own, as cameras write it.
+    let preview = [&[0xff, 0xe1, 0, 8][..], b"Exif", &[0xff, 0xd9]].concat();
+    let with_preview = [&whole[..2], &preview, &whole[2..]].concat();
+    let files = one("a.jpg", with_preview.clone());
+    load(&graph("a.jpg", ""), &files).expect("a picture with a preview");
+    let files = one("a.jpg", with_preview[..with_preview.len() - 2].to_vec());
+    assert_eq!(mistake(&graph("a.jpg", ""), &files).code, "bad-image");
+}
+
+/// A chunk of a PNG.
+fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let named = [&kind[..], data].concat();
+    let length = (data.len() as u32).to_be_bytes();
+    [&length[..], &named, &crc32(&named).to_be_bytes()].concat()
+}
+
+#[test]
+fn a_profile_takes_no_more_memory_than_its_bound() {
+    let whole = png(&[7; 24], ExtendedColorType::Rgb8);
+    // A chunk that is larger than the bound is left out or refused; else the picture is as it was.
+    for kind in [b"iCCP", b"eXIf", b"tEXt"] {
+        let profile = chunk(kind, &[b"p\0\0".to_vec(), vec![0; 16 << 20]].concat());
+        let file = [&whole[..33], &profile, &whole[33..]].concat();
+        match load(&graph("a.png", ""), &one("a.png", file)) {
+            Ok(texture) => near(&texel(&texture, 1, 1), &[0.002; 3], 1e-3),
+            Err(mistakes) => assert!(
+                mistakes.iter().all(|m| m.code == "bad-image"),
+                "{mistakes:?}"
+            ),
+        }
+    }
+}
+
+#[test]
+fn numbers_near_the_largest_have_a_mean_and_a_variance() {
+    let mut numbers = vec![0.5; 8];
+    numbers[1] = 3e38;
+    numbers[2] = -3e38;
+    numbers[5] = f32::NAN;
+    numbers[6] = f32::INFINITY;
+    let files = one("a.exr", exr(numbers, false));
+    let texture = load(&graph("a.exr", ""), &files).expect("a warning only");
+    assert_eq!(texture.warnings()[0].code, "not-finite-texels");
+    near(&texel(&texture, 1, 0), &[1e9; 3], 1e3);
+    near(&texel(&texture, 2, 0), &[-1e9; 3], 1e3);
+    let footprints: Vec<Footprint> = [1e-6, 0.01, 0.1, 0.5, 3.0, 100.0]
+        .into_iter()
+        .flat_map(|size: f32| {
+            [0.1, 0.3, 0.45, 0.9].map(|u: f32| Footprint {
+                uv: [u, 0.3],
+                du: [size, 0.0],
+                dv: [0.0, size],
+                ..Footprint::default()
+            })
+        })
+        .collect();
+    for method in [Method::Local, Method::Quad, Method::Ensemble, Method::Auto] {
+        let options = Options {
+            method,
+            moments: true,
+            ..Options::default()
+        };
+        let outputs = texture.evaluator(&options).evaluate(&footprints);
+        let (means, variances) = outputs.split_at(3);
+        for mean in means.iter().flatten() {
+            assert!(mean.is_finite() && mean.abs() <= 1.1e9, "{method}: {mean}");
+        }
+        for variance in variances.iter().flatten() {
+            assert!(
+                variance.is_finite() && *variance >= 0.0,
+                "{method}: {variance}"
+            );
+        }
+        // A footprint of a texel about the largest number is most of it, not the 0 of what overflows.
+        let within = texture.evaluator(&options).evaluate(&[Footprint {
+            uv: [0.375, 0.25],
+            du: [0.02, 0.0],
+            dv: [0.0, 0.02],
+            ..Footprint::default()
+        }]);
+        assert!(within[0][0] > 5e8, "{method}: {}", within[0][0]);
+    }
+}
+
+#[test]
+fn a_root_keeps_graphs_from_what_lies_outside_of_it() {
+    let place = std::env::temp_dir().join(format!("mipless-root-{}", std::process::id()));
+    let inner = place.join("root/graphs");
+    std::fs::create_dir_all(&inner).expect("folders");
+    let picture = png(&[9; 24], ExtendedColorType::Rgb8);
+    for name in ["outside.png", "root/beside.png", "root/graphs/within.png"] {
+        std::fs::write(place.join(name), &picture).expect("a file");
+    }
+    let files = Folder(inner.clone())
+        .within(&place.join("root"))
+        .expect("a folder");
+    let absolute = place.join("outside.png");
+    let mut outside = vec![
+        "../../outside.png".to_owned(),
+        absolute.display().to_string(),
+    ];
+    outside.push("../../missing.png".to_owned());
+    #[cfg(unix)]
+    {
+        let link = |to: &str, name: &str| {
+            std::os::unix::fs::symlink(place.join(to), inner.join(name)).expect("a link");
+        };
+        link("outside.png", "link.png");
+        link("", "folder");
+        outside.extend(["link.png".to_owned(), "folder/outside.png".to_owned()]);
+        link("root/beside.png", "near.png");
+        assert!(files.read("near.png").is_ok(), "a link that stays within");
+    }
+    for name in &outside {
+        let error = files.read(name).expect_err("it lies outside");
+        assert_eq!(
+            error.kind(),
+            io::ErrorKind::PermissionDenied,
+            "{name}: {error}"
+        );
+        let mistake = mistake(&graph(name, ""), &files);
+        assert_eq!(mistake.code, "unreadable-file", "{mistake:?}");
+        assert!(mistake.message.contains("outside"), "{mistake:?}");
+    }
+    for name in ["within.png", "../beside.png"] {
+        assert!(files.read(name).is_ok(), "{name}");
+    }
+    let missing = files.read("missing.png").expect_err("it is not there");
+    assert_eq!(missing.kind(), io::ErrorKind::NotFound);
+    std::fs::remove_dir_all(&place).expect("a folder of this test");
+}

@@ -3,6 +3,7 @@
 mod alpha;
 mod composite;
 pub(crate) mod hsv;
+pub(crate) mod stops;
 
 room! {
     blackbody,

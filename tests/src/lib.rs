@@ -14,6 +14,7 @@
 //! | `bounds` | nodes with two bounds, in any order, given in any way |
 //! | `reach` | the values that the check says signals can have, and divisors that may be 0 |
 //! | `names` | whatever things are called, every target compiles |
+//! | `linear` | what a graph costs grows as the graph does |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `tidy` | the order of the house: arrows, generated files, names |
 //! | `book` | the pages of the nodes and their pictures |

@@ -4,6 +4,7 @@ mod bad_graphs;
 mod folder;
 mod images;
 mod names;
+mod overwrite;
 
 use folder::{Folder, GRAPH, Run};
 use serde_json::Value;
@@ -233,7 +234,7 @@ fn shaders_for_every_target() {
     folder
         .run("compile marble.json --out .")
         .is(2)
-        .says("would replace a graph");
+        .says("would replace a file that is read");
     assert_eq!(folder.read("marble.json"), GRAPH.as_bytes());
 }
 

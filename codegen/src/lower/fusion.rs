@@ -8,7 +8,7 @@
 //! between, or where the amplitude of the noise itself is live, the region is averaged where it
 //! runs, by [`super::taps`].
 
-use super::{Arguments, Bundle, Compiler, Lower, Options, is_source, value_results};
+use super::{Arguments, Bundle, Compiler, Lower, Options, is_source, shape, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
 use crate::moments::{Algebra, Branch, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
@@ -228,6 +228,17 @@ impl<'b> Lower<'_, 'b> {
     ) -> Bundle<'b> {
         let compiler = self.compiler;
         let (entry, periodic) = (chain.entry, chain.period.is_some());
+        // Regions of one shape are one function with one table, whose nodes come first.
+        let nodes = region(compiler, index, &[entry]);
+        let shape = shape::shape(compiler, &[entry], &nodes).map(|mut shape| {
+            shape.extend(domain.map(f32::to_bits));
+            shape.push(u32::from(periodic));
+            shape
+        });
+        let (index, entry) = match shape {
+            Some(shape) => *(compiler.shapes.borrow_mut().entry(shape)).or_insert((index, entry)),
+            None => (index, entry),
+        };
         let known = compiler.fused.borrow().get(&index).cloned();
         let samples = known.unwrap_or_else(|| {
             let samples = sample(compiler, index, entry, (domain, periodic), closed.len());
@@ -251,9 +262,16 @@ impl<'b> Lower<'_, 'b> {
                 } else {
                     name.clone()
                 };
-                let of = (function.clone(), branch.clone(), i);
-                let bounds = (domain, periodic, signal.range);
-                let table = Tabulated::new(self.module, &name, of, bounds, &samples);
+                let key = format!("fused {index} {i}");
+                let known = compiler.tabulated.borrow().get(&key).cloned();
+                let table = known.unwrap_or_else(|| {
+                    let of = (function.clone(), branch.clone(), i);
+                    let bounds = (domain, periodic, signal.range);
+                    let table = Tabulated::new(self.module, &name, of, bounds, &samples);
+                    (compiler.tabulated.borrow_mut()).insert(key, table.clone());
+                    table
+                });
+                let table = table.within(signal.range);
                 self.algebra.transfer(&chain.signal, &table)
             })
             .collect()

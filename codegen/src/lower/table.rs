@@ -1,7 +1,7 @@
 //! What nodes ask of pictures and tables: numbers that are computed when they are first read.
 
 use super::{Lower, PixelFilter, identifier};
-use crate::ir::{Builder, Numbers};
+use crate::ir::{Builder, FunctionRef, Numbers};
 use crate::moments::{Branch, Sampled, Samples, Tabulated, sample_points};
 use mipless_graph::{Node, Picture};
 use std::any::Any;
@@ -95,24 +95,62 @@ impl Lower<'_, '_> {
         let (from, to) = (b.load(values, index), b.load(values, index + 1));
         b.result("value", from + (to - from) * (place - left));
         let of = b.finish(self.module);
-        let branch = Branch::of_numbers(self.module, &identifier(name), &of, 1);
+        let parts = move |x| vec![function(x)];
+        let mut tables = self.tabulate_all(key, name, (domain, &[range]), &of, parts);
+        tables.remove(0)
+    }
+
+    /// A function of one number, `of`, as transfers by tables, one for each number that it gives,
+    /// made once for each key; beyond the domain it is constant, and `ranges` bound its numbers. The
+    /// tables are computed from `values` when they are first read.
+    pub fn tabulate_all(
+        &mut self,
+        key: &str,
+        name: &str,
+        (domain, ranges): ([f32; 2], &[[f32; 2]]),
+        of: &FunctionRef,
+        values: impl Fn(f64) -> Vec<f64> + Send + Sync + 'static,
+    ) -> Vec<Tabulated> {
+        let place = |i: usize| {
+            if i == 0 {
+                key.to_owned()
+            } else {
+                format!("{key} {i}")
+            }
+        };
+        let known = {
+            let tabulated = self.compiler.tabulated.borrow();
+            let known = (0..ranges.len()).map(|i| tabulated.get(&place(i)).cloned());
+            known.collect::<Option<Vec<_>>>()
+        };
+        if let Some(known) = known {
+            return known;
+        }
+        let branch = Branch::of_numbers(self.module, &identifier(name), of, 1);
+        let count = ranges.len();
         let samples: Samples = Arc::new(LazyLock::new(Box::new(move || {
-            let points = sample_points(domain).into_iter();
-            let values = points.map(|x| function(x.into())).collect();
-            vec![Sampled::new(values, false)]
+            let mut sampled = vec![Vec::new(); count];
+            for x in sample_points(domain) {
+                for (to, value) in sampled.iter_mut().zip(values(x.into())) {
+                    to.push(value);
+                }
+            }
+            let sampled = sampled.into_iter();
+            sampled.map(|values| Sampled::new(values, false)).collect()
         })));
-        let bounds = (domain, false, range);
-        let table = Tabulated::new(
-            self.module,
-            &identifier(name),
-            (of, branch, 0),
-            bounds,
-            &samples,
-        );
-        self.compiler
-            .tabulated
-            .borrow_mut()
-            .insert(key.to_owned(), table.clone());
-        table
+        let mut tables = Vec::new();
+        for (i, &range) in ranges.iter().enumerate() {
+            let table = Tabulated::new(
+                self.module,
+                &identifier(name),
+                (of.clone(), branch.clone(), i),
+                (domain, false, range),
+                &samples,
+            );
+            let mut tabulated = self.compiler.tabulated.borrow_mut();
+            tabulated.insert(place(i), table.clone());
+            tables.push(table);
+        }
+        tables
     }
 }

@@ -260,6 +260,11 @@ impl Tabulated {
             tables,
         }
     }
+
+    /// The same with other bounds.
+    pub(crate) fn within(self, range: [f32; 2]) -> Self {
+        Self { range, ..self }
+    }
 }
 
 /// Where a pyramid is read: the two levels' texels and how they mix.

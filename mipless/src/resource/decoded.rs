@@ -17,8 +17,11 @@ pub(super) fn one(name: &str, files: &dyn Files) -> (Picture, Option<Remark>) {
             let remark = (decoded.replaced > 0).then(|| Remark {
                 severity: Severity::Warning,
                 code: "not-finite-texels",
-                message: format!("{} numbers of `{name}` are not finite", decoded.replaced),
-                help: "NaN is taken for 0, and infinity for 65504",
+                message: format!(
+                    "{} numbers of `{name}` are not finite, or larger than 1e9",
+                    decoded.replaced
+                ),
+                help: "NaN is taken for 0, infinity for 65504, and what is larger than 1e9 for that",
             });
             (decoded.picture, remark)
         }
@@ -43,6 +46,11 @@ fn unreadable(name: &str, error: &io::Error) -> Remark {
             "unreadable-file",
             format!("`{name}` is a folder"),
             "name a picture in it",
+        ),
+        io::ErrorKind::PermissionDenied => Remark::error(
+            "unreadable-file",
+            format!("`{name}` cannot be read: {error}"),
+            "the file must be readable, and lie in the folder that files are limited to, if they are",
         ),
         _ => Remark::error(
             "unreadable-file",

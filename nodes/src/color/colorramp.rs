@@ -1,9 +1,11 @@
 //! A function of one number by stops.
 
+use crate::color::stops::{FEW, Segments};
 use crate::componentwise::transfer;
 use crate::port;
 use crate::port::number;
-use mipless_codegen::moments::{Piecewise, Shape};
+use mipless_codegen::ir::Builder;
+use mipless_codegen::moments::{Piecewise, Shape, Signal};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
@@ -92,6 +94,10 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         // The channels bend with one another: what each bends is not independent.
         x.hermite = Some(lower.algebra.fresh_symbol());
     }
+    let span = stops.stops[stops.stops.len() - 1].at - stops.stops[0].at;
+    if stops.stops.len() > FEW && span > 1e-3 {
+        return long(lower, node, &x, shape);
+    }
     let b = lower.b();
     let channel = |i: usize| {
         let stops: Vec<_> = (stops.stops.iter())
@@ -100,4 +106,33 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         transfer(lower, &x, &Piecewise::ramp(&stops, shape))
     };
     (0..channels).map(channel).collect()
+}
+
+/// A ramp of many stops, by tables.
+fn long<'b>(lower: &mut Lower<'_, 'b>, node: &Node, x: &Signal<'b>, shape: Shape) -> Bundle<'b> {
+    let stops = lower.stops(node, "stops");
+    let key = format!("ramp {}", node.name);
+    let segments = lower.once(&key, || Segments::of(stops, shape));
+    let table = lower.table(&format!("{key} stops"), "stops", || {
+        segments.rows().to_vec().into()
+    });
+    let of = lower.function(&format!("{key} of"), |module| {
+        let b = &Builder::new("ramp_of", "A ramp of many stops.");
+        let x = b.float_param("x");
+        let channels = segments.at(b, table, x);
+        b.results((0..channels.len()).map(|i| format!("value_{i}")), channels);
+        b.finish(module)
+    });
+    let ends = [0, stops.stops.len() - 1].map(|i| stops.stops[i].at);
+    let ranges: Vec<[f32; 2]> = (0..stops.ty.components())
+        .map(|i| {
+            let values = stops.stops.iter().map(|stop| stop.value[i]);
+            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| {
+                [low.min(x), high.max(x)]
+            })
+        })
+        .collect();
+    let values = move |x| segments.value(x);
+    let tables = lower.tabulate_all(&key, "ramp", (ends, &ranges), &of, values);
+    tables.iter().map(|t| transfer(lower, x, t)).collect()
 }

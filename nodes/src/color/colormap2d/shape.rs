@@ -1,5 +1,6 @@
 //! Maps that are shapes: bands, rings, Voronoi regions, coloured by stops.
 
+use crate::color::stops::{FEW, Segments};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Vec2};
 use mipless_codegen::moments::{self, Piecewise, Transfer};
@@ -76,6 +77,11 @@ impl Shape {
             }
             Kind::Regions => self.nearest(b, module, [x, y], periodic),
         };
+        if self.stops.stops.len() > FEW {
+            let segments = Segments::of(&self.stops, self.interpolation);
+            let table = module.table("stops", segments.rows().to_vec());
+            return segments.at(b, table, t);
+        }
         let channel = |i: usize| {
             let stops: Vec<_> = (self.stops.stops.iter())
                 .map(|stop| (b.float(stop.at), b.float(stop.value[i])))
