@@ -68,6 +68,11 @@ pub trait Transfer<'b> {
     fn binary(&self) -> Option<[f32; 2]> {
         None
     }
+    /// Whether the value may jump: what does not spread lies on one side, while a Gaussian of next to
+    /// no width has both.
+    fn jumps(&self) -> bool {
+        false
+    }
     /// How many places the closed form adds a term for: where a table is cheaper depends on it.
     fn knots(&self) -> u32 {
         1
@@ -88,7 +93,7 @@ pub struct SharedTransfer<'b> {
     pub name: &'static str,
     /// One sentence that says what the family computes.
     pub doc: &'static str,
-    /// What the code depends on beside the values, below 2²⁹.
+    /// What the code depends on beside the values, below 2²⁸.
     pub variant: u32,
     /// The values that tell the members apart.
     pub values: SmallVec<[Float<'b>; 16]>,
@@ -142,13 +147,14 @@ impl<'b> Algebra<'b> {
             second: carries,
             hermite: x.hermite.is_some(),
             bounded,
+            jumps: t.jumps(),
         };
         let results = match shared {
             Some(shared) => {
                 inputs.extend(shared.values.iter().map(|&v| ("v", v)));
                 let of = SharedFunction {
                     name: shared.name,
-                    variant: shared.variant << 3 | wants.bits(),
+                    variant: shared.variant << 4 | wants.bits(),
                     doc: shared.doc,
                 };
                 b.shared(of, &inputs, |_, v| {
@@ -210,11 +216,15 @@ struct Wants {
     hermite: bool,
     /// That the mean stays inside the bounds of T.
     bounded: bool,
+    /// The side of a jump on which an input lies that does not spread.
+    jumps: bool,
 }
 
 impl Wants {
     fn bits(self) -> u32 {
-        u32::from(self.second) | u32::from(self.hermite) << 1 | u32::from(self.bounded) << 2
+        let flags = [self.second, self.hermite, self.bounded, self.jumps];
+        let bit = |(place, flag): (usize, bool)| u32::from(flag) << place;
+        flags.into_iter().enumerate().map(bit).sum()
     }
 }
 
@@ -246,6 +256,7 @@ fn through<'b>(
     });
     let mut out = &x * m.slope;
     out.mean = m.mean;
+    let mut distortion = m.distortion;
 
     // The third cumulant.
     let skewness = x.skewness(inverse_sd);
@@ -272,10 +283,15 @@ fn through<'b>(
         };
         hermite = m.curvature * left * std::f32::consts::FRAC_1_SQRT_2;
     }
-    let mut distortion = m.distortion;
     if wants.hermite || wants.second {
         let explained = if wants.hermite { variance } else { linear };
         distortion = (distortion - (m.curvature * explained).square() * 0.5).max(0.0);
+    }
+
+    if wants.jumps {
+        let spreads = variance.gt(0.0);
+        out.mean = spreads.select(out.mean, t.value(x.mean));
+        distortion = spreads.select(distortion, 0.0);
     }
 
     let [mean, gx, gy, hxx, hxy, hyy, private] = out.parts();

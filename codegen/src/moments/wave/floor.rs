@@ -20,6 +20,10 @@ impl<'b> Transfer<'b> for Staircase {
         x.floor()
     }
 
+    fn jumps(&self) -> bool {
+        true
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let fraction = self.0.moments(x);
         Moments {
