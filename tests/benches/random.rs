@@ -9,7 +9,7 @@
 //! `cargo bench -p mipless-tests --bench random -- laws COUNT [FIRST]` takes the graphs of COUNT seeds
 //! from FIRST on through all laws of composition by every method, and prints what is broken, by law.
 //! Three graphs of each kind of failure are reduced and written to `target/composition`, unless
-//! `FAST=1` is set. `LAWS=vanishing,far` and `METHODS=local,quad` look at less.
+//! `FAST=1` is set (`EACH=20`: twenty). `LAWS=vanishing,far` and `METHODS=local,quad` look at less.
 //!
 //! `cargo bench -p mipless-tests --bench random -- seed SEED` prints the graph of a seed.
 //!
@@ -152,8 +152,12 @@ fn laws(count: u64, first: u64) {
     if asked("FAST") {
         return;
     }
+    let each = env::var("EACH")
+        .ok()
+        .and_then(|each| each.parse().ok())
+        .unwrap_or(3);
     let chosen: Vec<_> = (kinds.iter())
-        .flat_map(|(kind, cases)| cases.iter().take(3).map(move |case| (kind, case)))
+        .flat_map(|(kind, cases)| cases.iter().take(each).map(move |case| (kind, case)))
         .collect();
     chosen
         .into_par_iter()

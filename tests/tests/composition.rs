@@ -60,10 +60,10 @@ const BROKEN: [(Law, usize); 5] = [
     // Smooth steps under footprints that are much wider than they are.
     (Law::Spread, 3),
     // Edges that lie at the value itself, and smooth steps whose ends are crossed.
-    (Law::Vanishing, 27),
+    (Law::Vanishing, 19),
     (Law::Far, 9),
     // Edges, too.
-    (Law::Rounding, 31),
+    (Law::Rounding, 30),
 ];
 
 /// Random graphs in every run; ten times as many, by every method, where there is time.

@@ -199,7 +199,7 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
         (self.segments()).fold(sum, |sum, segment| sum + segment.value(x))
     }
 
-    fn jumps(&self) -> bool {
+    fn is_steep(&self) -> bool {
         self.knots.iter().any(|knot| !knot.jump.is_zero())
     }
 

@@ -68,9 +68,9 @@ pub trait Transfer<'b> {
     fn binary(&self) -> Option<[f32; 2]> {
         None
     }
-    /// Whether the value may jump: what does not spread lies on one side, while a Gaussian of next to
-    /// no width has both.
-    fn jumps(&self) -> bool {
+    /// Whether the value may jump, or rise without bound: what does not spread has one value, while a
+    /// Gaussian of next to no width has both sides.
+    fn is_steep(&self) -> bool {
         false
     }
     /// How many places the closed form adds a term for: where a table is cheaper depends on it.
@@ -147,7 +147,7 @@ impl<'b> Algebra<'b> {
             second: carries,
             hermite: x.hermite.is_some(),
             bounded,
-            jumps: t.jumps(),
+            steep: t.is_steep(),
         };
         let results = match shared {
             Some(shared) => {
@@ -216,17 +216,20 @@ struct Wants {
     hermite: bool,
     /// That the mean stays inside the bounds of T.
     bounded: bool,
-    /// The side of a jump on which an input lies that does not spread.
-    jumps: bool,
+    /// The value itself where the input does not spread.
+    steep: bool,
 }
 
 impl Wants {
     fn bits(self) -> u32 {
-        let flags = [self.second, self.hermite, self.bounded, self.jumps];
+        let flags = [self.second, self.hermite, self.bounded, self.steep];
         let bit = |(place, flag): (usize, bool)| u32::from(flag) << place;
         flags.into_iter().enumerate().map(bit).sum()
     }
 }
+
+/// The least variance that is told from none: σ is a rounding of a position.
+const NARROWEST: f32 = 1e-14;
 
 /// The names of a signal's parts.
 const NAMES: [&str; PARTS] = ["mean", "gx", "gy", "hxx", "hxy", "hyy", "private"];
@@ -288,8 +291,8 @@ fn through<'b>(
         distortion = (distortion - (m.curvature * explained).square() * 0.5).max(0.0);
     }
 
-    if wants.jumps {
-        let spreads = variance.gt(0.0);
+    if wants.steep {
+        let spreads = variance.gt(NARROWEST);
         out.mean = spreads.select(out.mean, t.value(x.mean));
         distortion = spreads.select(distortion, 0.0);
     }

@@ -104,7 +104,7 @@ impl<'b> Transfer<'b> for SquareWave<'b> {
         fraction(x).lt(self.width).select(1.0, 0.0)
     }
 
-    fn jumps(&self) -> bool {
+    fn is_steep(&self) -> bool {
         true
     }
 

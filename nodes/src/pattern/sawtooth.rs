@@ -12,7 +12,7 @@ impl<'b> Transfer<'b> for Sawtooth {
         x - x.floor()
     }
 
-    fn jumps(&self) -> bool {
+    fn is_steep(&self) -> bool {
         true
     }
 

@@ -20,7 +20,7 @@ impl<'b> Transfer<'b> for Staircase {
         x.floor()
     }
 
-    fn jumps(&self) -> bool {
+    fn is_steep(&self) -> bool {
         true
     }
 

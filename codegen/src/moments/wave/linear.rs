@@ -192,7 +192,7 @@ impl<'b> Transfer<'b> for LinearWave {
         piece.value(fraction(x))
     }
 
-    fn jumps(&self) -> bool {
+    fn is_steep(&self) -> bool {
         let jumps = |corner: &Corner| corner.before != corner.after;
         self.corners.iter().any(jumps)
     }
