@@ -36,6 +36,9 @@ const REDUCED: usize = 12;
 const QUESTIONS: usize = 400;
 const FEWER: u32 = 64;
 
+/// A name, and what it means of a graph.
+type Column<'a> = (&'a str, &'a dyn Fn(&Row) -> f64);
+
 /// What is measured of a graph.
 struct Row {
     seed: u64,
@@ -137,7 +140,7 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
     println!("`auto` worse than `point` by more than the floor: {worse}; by 0.005 more: {clearly}");
     println!("`auto` above 0.05: {bad}");
     println!("\n| | median | 95 % | worst |\n|---|---|---|---|");
-    let columns: [(&str, &dyn Fn(&Row) -> f64); 4] = [
+    let columns: [Column<'_>; 4] = [
         ("auto", &|row| row.auto),
         ("point", &|row| row.point),
         ("floor", &|row| row.floor),
