@@ -35,8 +35,11 @@ fn places() -> Vec<Point> {
     (0..3000).map(place).collect()
 }
 
+/// A name, and where it takes a point.
+type Isometry = (String, Box<dyn Fn(Point) -> Point>);
+
 /// The isometries that a lattice might be symmetric under.
-fn isometries(axes: usize) -> Vec<(String, Box<dyn Fn(Point) -> Point>)> {
+fn isometries(axes: usize) -> Vec<Isometry> {
     let named = |name: &str, f: fn(Point) -> Point| {
         let f: Box<dyn Fn(Point) -> Point> = Box::new(f);
         (name.to_owned(), f)

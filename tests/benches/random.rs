@@ -3,12 +3,13 @@
 //! `cargo bench -p mipless-tests --bench random -- COUNT [FIRST]` measures the graphs of COUNT seeds
 //! from FIRST on, in a band of a quarter to four wavelengths of each, against samples, and prints how
 //! many are worse by `auto` than by `point`, the errors, the bias of the mean of a frame far away, and
-//! the worst graphs with the node that is suspected.
+//! the worst graphs with the node that is suspected. The worst are reduced and written to
+//! `target/composition`, unless `FAST=1` is set.
 //!
 //! `cargo bench -p mipless-tests --bench random -- laws COUNT [FIRST]` takes the graphs of COUNT seeds
 //! from FIRST on through all laws of composition by every method, and prints what is broken, by law.
 //! Three graphs of each kind of failure are reduced and written to `target/composition`, unless
-//! `FAST=1` is set. `LAWS=vanishing,far` and `METHODS=local,quad` look at less.
+//! `FAST=1` is set (`EACH=20`: twenty). `LAWS=vanishing,far` and `METHODS=local,quad` look at less.
 //!
 //! `cargo bench -p mipless-tests --bench random -- seed SEED` prints the graph of a seed.
 //!
@@ -23,11 +24,10 @@ use mipless_tests::case::load;
 use mipless_tests::law::{Law, Violation, violations};
 use mipless_tests::random_graph::of_seed;
 use mipless_tests::reduce::reduced;
-use mipless_tests::{METHODS, asked};
+use mipless_tests::{METHODS, asked, root};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::panic::{catch_unwind, set_hook};
-use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 use std::{env, fs};
@@ -83,6 +83,14 @@ fn files(paths: &[String]) {
             }
         }
     }
+}
+
+/// Writes a graph that was found.
+fn write(name: &str, text: &str) {
+    let folder = root().join("target/composition");
+    let written = fs::create_dir_all(&folder)
+        .and_then(|()| fs::write(folder.join(format!("{name}.json")), text));
+    written.unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
 }
 
 /// Those of `all` whose names a variable lists; all if it is not set.
@@ -144,10 +152,12 @@ fn laws(count: u64, first: u64) {
     if asked("FAST") {
         return;
     }
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/composition");
-    fs::create_dir_all(&folder).expect("a folder for what is found");
+    let each = env::var("EACH")
+        .ok()
+        .and_then(|each| each.parse().ok())
+        .unwrap_or(3);
     let chosen: Vec<_> = (kinds.iter())
-        .flat_map(|(kind, cases)| cases.iter().take(3).map(move |case| (kind, case)))
+        .flat_map(|(kind, cases)| cases.iter().take(each).map(move |case| (kind, case)))
         .collect();
     chosen
         .into_par_iter()
@@ -165,6 +175,6 @@ fn laws(count: u64, first: u64) {
                 .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
                 .collect();
             let text = serde_json::to_string_pretty(&small).expect("JSON");
-            fs::write(folder.join(format!("{name}_{seed}.json")), text).expect("a writable folder");
+            write(&format!("{name}_{seed}"), &text);
         });
 }

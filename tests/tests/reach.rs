@@ -40,7 +40,7 @@ fn outside(texture: &Texture, places: &[Footprint]) -> Option<String> {
                         }
                     });
             let fits = |x: f32| interval.low - slack <= x && x <= interval.high + slack;
-            if let Some((wrong, place)) = values.into_iter().zip(places).find(|&(x, _)| !fits(x)) {
+            if let Some(wrong) = values.into_iter().find(|&x| !fits(x)) {
                 return Some(format!(
                     "component {i} of `{}` is {wrong}, not {interval}",
                     output.name

@@ -76,6 +76,11 @@ fn polar() -> Vec<([f32; 4], f32)> {
     all
 }
 
+/// The share of a variance that counts as explained by the others where no more is left.
+const EXPLAINED: f32 = 1e-6;
+/// The least variance that is told from none.
+const NARROWEST: f32 = 1e-13;
+
 /// The lower triangle of L with L Lᵀ = Σ, and the inverses of its diagonal.
 struct Triangle<'b> {
     rows: Vec<Vec<Float<'b>>>,
@@ -89,7 +94,8 @@ impl<'b> Triangle<'b> {
         let mut inverses: Vec<Float<'b>> = Vec::new();
         for (j, x) in inputs.iter().enumerate() {
             let mut row: Vec<Float<'b>> = Vec::new();
-            let mut left = x.variance();
+            let variance = x.variance();
+            let mut left = variance;
             for i in 0..j {
                 let products = row.iter().zip(&rows[i]).map(|(&p, &q)| p * q);
                 let covariance = x.covariance(&inputs[i]).total;
@@ -98,10 +104,13 @@ impl<'b> Triangle<'b> {
                 left -= entry.square();
                 row.push(entry);
             }
-            let (sd, inverse) = super::spread(left.max(0.0));
-            row.push(sd);
+            // What rounding leaves of a variance that others explain is no spread: the hue of a grey
+            // would take every value.
+            let own = left.gt(variance * EXPLAINED + NARROWEST);
+            let sd = left.max(NARROWEST).sqrt();
+            row.push(own.select(sd, 0.0));
             rows.push(row);
-            inverses.push(inverse);
+            inverses.push(own.select(1.0 / sd, 0.0));
         }
         Self { rows, inverses }
     }

@@ -143,6 +143,10 @@ impl<'b, F: Fn(Float<'b>) -> Float<'b>> Transfer<'b> for Curve<'b, F> {
         (self.function)(x)
     }
 
+    fn is_steep(&self) -> bool {
+        true
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let (nodes, flats) = self.pieces(x);
         // The line c + dz through the middle, and the secant over ±σ.

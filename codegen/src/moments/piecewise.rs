@@ -208,6 +208,10 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
         (self.segments()).fold(sum, |sum, segment| sum + segment.value(x))
     }
 
+    fn is_steep(&self) -> bool {
+        self.knots.iter().any(|knot| !knot.jump.is_zero())
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let t = self.within(x.range);
         let m = t.limited(x.mean, x.sd * 8.0);

@@ -204,6 +204,10 @@ impl<'b> Transfer<'b> for RealPower<'b> {
         x.gt(0.0).select(raised, at_zero)
     }
 
+    fn is_steep(&self) -> bool {
+        true
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let zero = x.mean.literal(0.0);
         let curve = Curve {

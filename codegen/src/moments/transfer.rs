@@ -68,6 +68,11 @@ pub trait Transfer<'b> {
     fn binary(&self) -> Option<[f32; 2]> {
         None
     }
+    /// Whether the value may jump, or rise without bound: what does not spread has one value, while a
+    /// Gaussian of next to no width has both sides.
+    fn is_steep(&self) -> bool {
+        false
+    }
     /// How many places the closed form adds a term for: where a table is cheaper depends on it.
     fn knots(&self) -> u32 {
         1
@@ -88,7 +93,7 @@ pub struct SharedTransfer<'b> {
     pub name: &'static str,
     /// One sentence that says what the family computes.
     pub doc: &'static str,
-    /// What the code depends on beside the values, below 2²⁹.
+    /// What the code depends on beside the values, below 2²⁸.
     pub variant: u32,
     /// The values that tell the members apart.
     pub values: SmallVec<[Float<'b>; 16]>,
@@ -141,13 +146,14 @@ impl<'b> Algebra<'b> {
             second: carries,
             hermite: x.hermite.is_some(),
             bounded,
+            steep: t.is_steep(),
         };
         let results = match shared {
             Some(shared) => {
                 inputs.extend(shared.values.iter().map(|&v| ("v", v)));
                 let of = SharedFunction {
                     name: shared.name,
-                    variant: shared.variant << 3 | wants.bits(),
+                    variant: shared.variant << 4 | wants.bits(),
                     doc: shared.doc,
                 };
                 b.shared(of, &inputs, |_, v| {
@@ -209,13 +215,20 @@ struct Wants {
     hermite: bool,
     /// That the mean stays inside the bounds of T.
     bounded: bool,
+    /// The value itself where the input does not spread.
+    steep: bool,
 }
 
 impl Wants {
     fn bits(self) -> u32 {
-        u32::from(self.second) | u32::from(self.hermite) << 1 | u32::from(self.bounded) << 2
+        let flags = [self.second, self.hermite, self.bounded, self.steep];
+        let bit = |(place, flag): (usize, bool)| u32::from(flag) << place;
+        flags.into_iter().enumerate().map(bit).sum()
     }
 }
+
+/// The least variance that is told from none: σ is a rounding of a position.
+const NARROWEST: f32 = 1e-14;
 
 /// The names of a signal's parts.
 const NAMES: [&str; PARTS] = ["mean", "gx", "gy", "hxx", "hxy", "hyy", "private"];
@@ -249,6 +262,7 @@ fn through<'b>(
     });
     let mut out = &x * m.slope;
     out.mean = m.mean;
+    let mut distortion = m.distortion;
 
     // The third cumulant.
     let skewness = x.skewness(inverse_sd);
@@ -278,10 +292,15 @@ fn through<'b>(
         };
         hermite = m.curvature * left * std::f32::consts::FRAC_1_SQRT_2;
     }
-    let mut distortion = m.distortion;
     if wants.hermite || wants.second {
         let explained = if wants.hermite { variance } else { linear };
         distortion = (distortion - (m.curvature * explained).square() * 0.5).max(0.0);
+    }
+
+    if wants.steep {
+        let spreads = variance.gt(NARROWEST);
+        out.mean = spreads.select(out.mean, t.value(x.mean));
+        distortion = spreads.select(distortion, 0.0);
     }
 
     let [mean, gx, gy, hxx, hxy, hyy, private] = out.parts();

@@ -104,6 +104,10 @@ impl<'b> Transfer<'b> for SquareWave<'b> {
         fraction(x).lt(self.width).select(1.0, 0.0)
     }
 
+    fn is_steep(&self) -> bool {
+        true
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let u = fraction(x.mean);
         let edges = self.edges(u, x.inverse_sd);

@@ -30,6 +30,12 @@ const MOST: f32 = 24.0;
 /// No footprint is narrower, in squared cells.
 const NARROWEST: f32 = 1e-12;
 
+/// A coordinate that is spread by this variance, off the faces of cells where it does not spread at
+/// all: a point on a face lies in one cell, a Gaussian of next to no width in two.
+pub(crate) fn inside<'b>(coordinate: Float<'b>, variance: Float<'b>) -> Float<'b> {
+    coordinate + variance.gt(0.0).select(0.0, 6.0 * NARROWEST.sqrt())
+}
+
 /// What the hashes of a row's cells share.
 pub(crate) fn row_word<'b>(row: Int<'b>, seed: Uint<'b>, period: i32) -> Uint<'b> {
     wrapped(row, period).to_uint() * 0x9e37_79b1 + seed
@@ -379,6 +385,7 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef
         fade: fading(sd),
     };
     let determinant = eigenvalues[0] * eigenvalues[1];
+    let at = [inside(at[0], covariance[0]), inside(at[1], covariance[2])];
     let plane = Plane::of(&row, at, (covariance, determinant), &cells);
     let [along, across] = eigenvalues.map(coincidence);
     let filtered = Filtered {

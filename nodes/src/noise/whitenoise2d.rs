@@ -1,6 +1,6 @@
 //! `whitenoise2d`: a random number at every point.
 
-use crate::noise::cell::{VARIANCE, deviation, lattice_seed, number};
+use crate::noise::cell::{VARIANCE, deviation, inside, lattice_seed, number};
 use crate::noise::cellnoise2d::PERIOD;
 use crate::noise::field::{Field, Spread};
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
@@ -75,6 +75,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         let [s_xx, _, s_yy] = *spread.covariance;
         let [along_x, along_y] = [(x, s_xx), (y, s_yy)].map(|(fraction, variance)| {
             let [_, inverse] = deviation(variance);
+            let fraction = inside(fraction, variance);
             let below = |edge| Normal::at(edge, inverse).below;
             below(1.0 - fraction) - below(-fraction)
         });

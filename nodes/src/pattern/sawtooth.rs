@@ -12,6 +12,10 @@ impl<'b> Transfer<'b> for Sawtooth {
         x - x.floor()
     }
 
+    fn is_steep(&self) -> bool {
+        true
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         // x − (x ≥ 1) + (x < 0).
         let u = self.value(x.mean);

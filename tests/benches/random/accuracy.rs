@@ -4,11 +4,14 @@
 //! the two against each other over √2. Errors are the root mean square over pixels and components, of
 //! what a display shows: limited to 0 to 1, and sRGB.
 
+use super::write;
 use mipless::{Footprint, Method, Options, Texture};
 use mipless_runtime::srgb::srgb_from_linear;
+use mipless_tests::asked;
 use mipless_tests::case::load;
 use mipless_tests::random::Random;
 use mipless_tests::random_graph::of_seed;
+use mipless_tests::reduce::reduced;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -27,6 +30,14 @@ const SAMPLES: u32 = 1024;
 const VISIBLE: f64 = 0.01;
 /// Graphs that are listed, the worst first.
 const LISTED: usize = 20;
+
+/// Graphs that are reduced, by so many questions each, with so many samples.
+const REDUCED: usize = 12;
+const QUESTIONS: usize = 400;
+const FEWER: u32 = 64;
+
+/// A name, and what it means of a graph.
+type Column<'a> = (&'a str, &'a dyn Fn(&Row) -> f64);
 
 /// What is measured of a graph.
 #[derive(Clone, Copy)]
@@ -48,6 +59,9 @@ impl Row {
     }
 }
 
+/// A number of a graph.
+type Measure = fn(&Row) -> f64;
+
 enum Outcome {
     Measured(Row),
     /// It is the same everywhere, or white, or black.
@@ -64,7 +78,7 @@ pub(super) fn measure(count: u64, first: u64) {
             let run = || {
                 let (graph, texture) = of_seed(seed);
                 let nodes = graph["nodes"].as_object().map_or(0, serde_json::Map::len);
-                row(&texture, seed, nodes).map_or(Outcome::Flat, Outcome::Measured)
+                row(&texture, SAMPLES, seed, nodes).map_or(Outcome::Flat, Outcome::Measured)
             };
             catch_unwind(run).unwrap_or(Outcome::Panicked(seed))
         })
@@ -95,7 +109,7 @@ pub(super) fn measure(count: u64, first: u64) {
     for (row, suspect) in worse.iter().zip(&suspects).take(LISTED) {
         line(row, suspect);
     }
-    let orders: [(&str, fn(&Row) -> f64); 2] = [
+    let orders: [(&str, Measure); 2] = [
         ("the largest errors", |row| row.auto),
         ("the largest biases far away", |row| row.bias),
     ];
@@ -103,6 +117,9 @@ pub(super) fn measure(count: u64, first: u64) {
         rows.sort_by(|a, b| of(b).total_cmp(&of(a)));
         header(title);
         rows.iter().take(LISTED / 2).for_each(|row| line(row, ""));
+    }
+    if !asked("FAST") {
+        worse.par_iter().take(REDUCED).for_each(reduce);
     }
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for suspect in &suspects {
@@ -150,7 +167,7 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
     println!("`auto` worse than `point` by more than the floor: {worse}; by 0.005 more: {clearly}");
     println!("`auto` above 0.05: {bad}");
     println!("\n| | median | 95 % | worst |\n|---|---|---|---|");
-    let columns: [(&str, &dyn Fn(&Row) -> f64); 4] = [
+    let columns: [Column<'_>; 4] = [
         ("auto", &|row| row.auto),
         ("point", &|row| row.point),
         ("floor", &|row| row.floor),
@@ -264,15 +281,15 @@ fn mean([a, b]: &[Vec<Vec<f64>>; 2]) -> Vec<Vec<f64>> {
     a.iter().zip(b).map(of).collect()
 }
 
-fn row(texture: &Texture, seed: u64, nodes: usize) -> Option<Row> {
+fn row(texture: &Texture, samples: u32, seed: u64, nodes: usize) -> Option<Row> {
     let wavelength = wavelength(texture)?;
     let band = pixels(&BAND, wavelength);
-    let truths_shown = truths(texture, SAMPLES, &band).map(shown);
+    let truths_shown = truths(texture, samples, &band).map(shown);
     let truth = mean(&truths_shown);
     let error = |method| rms(&shown(evaluate(texture, method, 0, &band)), &truth);
 
     let frame = pixels(&[FAR, FAR], wavelength);
-    let far_truth = mean(&truths(texture, SAMPLES, &frame).map(shown));
+    let far_truth = mean(&truths(texture, samples, &frame).map(shown));
     let far = shown(evaluate(texture, Method::Auto, 0, &frame));
     let average = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
     let biases = (far.iter().zip(&far_truth)).map(|(a, b)| (average(a) - average(b)).abs());
@@ -285,6 +302,18 @@ fn row(texture: &Texture, seed: u64, nodes: usize) -> Option<Row> {
         floor: rms(&truths_shown[0], &truths_shown[1]) / SQRT_2,
         bias: biases.fold(0.0, f64::max),
     })
+}
+
+/// Writes the smallest graph that is as much worse by `auto` than by `point`, by a half.
+fn reduce(worse: &Row) {
+    let (graph, _) = of_seed(worse.seed);
+    let small = reduced(graph, QUESTIONS, |_, texture| {
+        let run = || row(texture, FEWER, worse.seed, 0);
+        let found = catch_unwind(run).ok().flatten();
+        found.is_some_and(|row| row.excess() > 0.5 * worse.excess())
+    });
+    let text = serde_json::to_string_pretty(&small).expect("JSON");
+    write(&format!("worse_{}", worse.seed), &text);
 }
 
 /// The node whose error exceeds those of its inputs most, each relative to the spread of its values.

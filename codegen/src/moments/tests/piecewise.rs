@@ -136,6 +136,9 @@ fn far_and_near() -> Vec<(f32, f32)> {
     points
 }
 
+/// A name, what makes the function, its values, and how far its mean may be off.
+type Stretched<'a> = (&'a str, super::Make<'a>, &'a dyn Fn(f64) -> f64, f64);
+
 #[test]
 fn a_segment_keeps_its_digits_under_any_spread() {
     let clamp = |x: f64| x.clamp(0.0, 1.0);
@@ -144,7 +147,7 @@ fn a_segment_keeps_its_digits_under_any_spread() {
         t * t * (3.0 - 2.0 * t)
     };
     let several = |x: f64| ramp_of_three(x);
-    let cases: [(&str, super::Make<'_>, &dyn Fn(f64) -> f64, f64); 3] = [
+    let cases: [Stretched<'_>; 3] = [
         (
             "clamp",
             &|b| Box::new(Piecewise::clamp(b.float(0.0), b.float(1.0))),

@@ -20,6 +20,10 @@ impl<'b> Transfer<'b> for Staircase {
         x.floor()
     }
 
+    fn is_steep(&self) -> bool {
+        true
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let fraction = self.0.moments(x);
         Moments {

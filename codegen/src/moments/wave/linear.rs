@@ -192,6 +192,11 @@ impl<'b> Transfer<'b> for LinearWave {
         piece.value(fraction(x))
     }
 
+    fn is_steep(&self) -> bool {
+        let jumps = |corner: &Corner| corner.before != corner.after;
+        self.corners.iter().any(jumps)
+    }
+
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
         let u = fraction(x.mean);
         let near = self.unrolled(u.builder(), -1.0, 2.0).moments(&Gaussian {

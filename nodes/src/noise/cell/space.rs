@@ -6,7 +6,7 @@
 use super::passed::{Passed, passed};
 use super::place::declared;
 use super::{
-    Cells, Filtered, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading,
+    Cells, Filtered, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside,
     lattice_seed, number, report, row, window,
 };
 use crate::noise::period::wrapped;
@@ -156,6 +156,7 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef
     let spread = Spread::declare(b);
     let [xx, xy, xz, yy, yz, zz] = *spread.covariance;
     let [minor_xx, minor_xy, _, minor_yy, _, minor_zz] = *spread.adjugate;
+    let [x, y, z] = [inside(x, xx), inside(y, yy), inside(z, zz)];
     let raised = zz + NARROWEST;
     let [sd_z, inverse_sd_z] = deviation(zz);
     let precision = inverse_sd_z.square();
