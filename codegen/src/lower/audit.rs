@@ -31,7 +31,11 @@ use rustc_hash::FxHashMap;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 use suspects::{beginnings, ends, readers, repeated, steady};
 use truth::{Errors, GLANCE, LOOK, Truth, footprints, values};
-use verdict::{Verdict, where_better};
+use verdict::{NOTICEABLE, Verdict, where_better};
+
+/// Errors that are worth points: somewhat less than what an output may be off, so that bands beside
+/// each other are filtered alike.
+const SAMPLED: f64 = 0.8 * verdict::TOLERANCE;
 
 /// The most graphs that a process remembers.
 const MOST: usize = 1024;
@@ -240,7 +244,7 @@ fn decide(
         facts.repeated = repeated(bands, checked, catalogue, options, facts);
         let maps = candidate(facts).errors;
         facts.repeated.retain(|node, repeated| {
-            repeated.within = where_better(&maps, &best.errors, &readers[*node]);
+            repeated.within = where_better(&maps, &best.errors, &readers[*node], NOTICEABLE);
             repeated.within != 0
         });
         best = best.or(candidate(facts), verdict);
@@ -258,7 +262,7 @@ fn decide(
         facts.sampled.extend(added.clone());
         let everywhere = candidate(facts).errors;
         added.retain(|node, sampling| {
-            sampling.within = where_better(&everywhere, &best.errors, &readers[*node]);
+            sampling.within = where_better(&everywhere, &best.errors, &readers[*node], SAMPLED);
             sampling.within != 0
         });
         facts.sampled.clone_from(&best.sampled);

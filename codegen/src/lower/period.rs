@@ -162,7 +162,8 @@ pub(super) fn periods(
         .collect();
     counts.sort_by(f64::total_cmp);
     counts.dedup_by(|x, y| (*x - *y).abs() < 1e-9);
-    let mut along = |moved: [f64; 2], kept: [f64; 2]| -> Option<[f64; 2]> {
+    // A period, and whether the function changes within it.
+    let mut along = |moved: [f64; 2], kept: [f64; 2]| -> Option<([f64; 2], bool)> {
         // a·d = 1 and b·d = 0.
         let area = moved[0] * kept[1] - moved[1] * kept[0];
         let unit = [kept[1] / area, -kept[0] / area];
@@ -172,8 +173,7 @@ pub(super) fn periods(
         let mut displacements = counts.iter().map(|count| unit.map(|d| d * count));
         let mut found = displacements.find(|&d| repeats(d))?;
         if repeats(found.map(|d| d * IRRATIONAL)) {
-            // It does not change that way.
-            return Some(found);
+            return Some((found, false));
         }
         // Where the steps are finer than those that were tried, so is the period.
         for prime in PRIMES {
@@ -183,7 +183,7 @@ pub(super) fn periods(
                 part = found.map(|d| d / prime);
             }
         }
-        Some(found)
+        Some((found, true))
     };
     for (i, &a) in directions.iter().enumerate() {
         // With stripes nothing but one direction counts: beside it, any.
@@ -197,9 +197,23 @@ pub(super) fn periods(
             if let Some(first) = along(a, b)
                 && let Some(second) = along(b, a)
             {
-                return Some([first, second]);
+                return Some(balanced(first, second));
             }
         }
     }
     None
+}
+
+/// Two periods; one along which nothing changes is as long as the other, so that a round footprint
+/// stays round.
+fn balanced((first, of_first): ([f64; 2], bool), (second, of_second): ([f64; 2], bool)) -> Periods {
+    let as_long = |d: [f64; 2], other: [f64; 2]| {
+        let by = other[0].hypot(other[1]) / d[0].hypot(d[1]);
+        d.map(|x| x * by)
+    };
+    match (of_first, of_second) {
+        (true, false) => [first, as_long(second, first)],
+        (false, true) => [as_long(first, second), second],
+        _ => [first, second],
+    }
 }

@@ -6,7 +6,7 @@ use super::truth::Errors;
 /// How far off an output may be, root mean square over places, as a display shows it.
 pub(super) const TOLERANCE: f64 = 0.03;
 /// Beyond this an output that is worse than a point is worth samples.
-const NOTICEABLE: f64 = 0.01;
+pub(super) const NOTICEABLE: f64 = 0.01;
 /// By how much samples must be better than a closed form that is merely inexact.
 const BETTER: f64 = 0.7;
 
@@ -47,9 +47,14 @@ pub(super) fn is_worse(error: f64, point: f64, floor: f64) -> bool {
     error > NOTICEABLE && error > point + floor
 }
 
-/// The bits of the bands in which something else is better for some of the outputs, where it
-/// matters.
-pub(super) fn where_better(other: &Errors, closed: &Errors, outputs: &[usize]) -> u32 {
+/// The bits of the bands in which something else is better for some of the outputs, where their
+/// error is above `noticed`.
+pub(super) fn where_better(
+    other: &Errors,
+    closed: &Errors,
+    outputs: &[usize],
+    noticed: f64,
+) -> u32 {
     let better = |band: &usize| {
         let square = |errors: &Errors| {
             let errors = outputs.iter().map(|&output| errors[output][*band].powi(2));
@@ -57,8 +62,8 @@ pub(super) fn where_better(other: &Errors, closed: &Errors, outputs: &[usize]) -
         };
         let matters = outputs
             .iter()
-            .any(|&output| closed[output][*band] > NOTICEABLE);
-        matters && square(other) < BETTER * square(closed)
+            .any(|&output| closed[output][*band] > noticed);
+        matters && square(other) < square(closed)
     };
     (0..Bands::COUNT)
         .filter(better)
