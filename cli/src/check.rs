@@ -65,6 +65,12 @@ struct Replacements<'a>(&'a Texture, &'a Audit);
 impl fmt::Display for Replacements<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(texture, audit) = self;
+        if audit.is_too_large {
+            writeln!(
+                f,
+                "the graph has too many nodes for an audit of its closed forms"
+            )?;
+        }
         if audit.replaced.is_empty() {
             return Ok(());
         }
@@ -125,7 +131,9 @@ impl fmt::Display for Measured<'_> {
                 )?;
             }
         }
-        if audit.outputs.is_empty() {
+        if audit.is_too_large {
+            writeln!(f, "the graph has too many nodes to be measured")?;
+        } else if audit.outputs.is_empty() {
             writeln!(
                 f,
                 "every output is a linear combination of Gaussian signals: exact"
@@ -172,6 +180,7 @@ fn audit_json(path: &Path, texture: &Texture, audit: &Audit, measure: bool) -> V
     });
     json!({
         "file": path.display().to_string(),
+        "too_large": audit.is_too_large,
         "replaced": replaced.collect::<Vec<_>>(),
         "outputs": outputs.collect::<Vec<_>>(),
     })

@@ -37,6 +37,10 @@ use verdict::{NOTICEABLE, Verdict, where_better};
 /// each other are filtered alike.
 const SAMPLED: f64 = 0.8 * verdict::TOLERANCE;
 
+/// The most nodes of a graph that is audited: an audit takes about as long as a picture of 500 × 500
+/// points.
+const LARGEST: usize = 4096;
+
 /// The most graphs that a process remembers.
 const MOST: usize = 1024;
 
@@ -47,6 +51,8 @@ pub struct Audit {
     pub outputs: Vec<AuditedOutput>,
     /// The nodes that `auto` does not close, in the order of the graph.
     pub replaced: Vec<Replaced>,
+    /// Whether the graph has so many nodes that it was not measured.
+    pub is_too_large: bool,
 }
 
 /// What `auto` does in place of a closed form.
@@ -119,8 +125,13 @@ pub(super) fn audited(
     mut facts: Facts,
 ) -> (Program, Audit) {
     let graph = checked.graph();
-    if is_exact(checked) {
-        return (program(graph, catalogue, options, &facts), Audit::default());
+    let is_too_large = facts.order.len() > LARGEST;
+    if is_too_large || is_exact(checked) {
+        let audit = Audit {
+            is_too_large,
+            ..Audit::default()
+        };
+        return (program(graph, catalogue, options, &facts), audit);
     }
     let shape = shape_of(graph, catalogue, options, &facts);
     let known = shape.as_ref().and_then(|shape| {
@@ -285,6 +296,7 @@ fn decide(
     let audit = Audit {
         outputs: audited_outputs(bands, &point, &closed_errors, &best.errors),
         replaced,
+        is_too_large: false,
     };
     let decision = Decision {
         sampled: best.sampled,
