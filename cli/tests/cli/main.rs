@@ -1,5 +1,6 @@
 //! The command as people and scripts see it: exit statuses, files, standard streams.
 
+mod audit;
 mod bad_graphs;
 mod folder;
 mod images;

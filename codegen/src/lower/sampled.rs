@@ -84,6 +84,11 @@ impl<'g, 'b> Lower<'g, 'b> {
         for (i, pair) in sampling.kept.windows(2).enumerate() {
             kept += (pair[1] - pair[0]) * (band - i as f32).clamp(0.0, 1.0);
         }
+        // Of what has a mean, nothing but the mean is left two bands after the last.
+        let last = Bands::COUNT - 1;
+        if sampling.kept[last] < 0.5 {
+            kept *= 1.0 - (0.5 * (band - last as f32)).clamp(0.0, 1.0);
+        }
         (closed.iter().zip(sums.chunks(Sums::COUNT)))
             .zip(&sampling.far)
             .map(|((closed, sums), &far)| {

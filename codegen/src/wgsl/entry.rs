@@ -52,18 +52,6 @@ pub(super) struct Names {
     pub(super) tables: String,
 }
 
-impl Names {
-    /// A name inside of an entry point, which calls the texture's function: a graph may be called as
-    /// one of them is.
-    fn local(&self, name: &str) -> String {
-        if name == self.function {
-            format!("its_{name}")
-        } else {
-            name.to_owned()
-        }
-    }
-}
-
 /// The parameters and outputs as structs.
 #[derive(Debug)]
 pub(super) struct Face {
@@ -372,35 +360,33 @@ fn push_compute(
     face: &Face,
     [footprints, pixels, argument]: [&str; 3],
 ) {
-    let [id, index, outputs, first] =
-        ["id", "index", "outputs", "first"].map(|name| names.local(name));
     let pixel = if face.position {
-        format!("{footprints}[{index}].footprint, {footprints}[{index}].position")
+        format!("{footprints}[index].footprint, {footprints}[index].position")
     } else {
-        format!("{footprints}[{index}]")
+        format!("{footprints}[index]")
     };
     let scalars: usize = face.outputs.iter().map(|o| o.ty.components()).sum();
     write!(
         out,
         "@compute @workgroup_size({WORKGROUP_SIZE})\n\
-         fn {name}(@builtin(global_invocation_id) {id}: vec3u) {{\n    \
-             let {index} = {id}.x + {id}.y * {PIXELS_PER_ROW}u;\n    \
-             if {index} >= arrayLength(&{footprints}) {{\n        return;\n    }}\n    \
-             let {outputs} = {}({pixel}{argument});\n    \
-             let {first} = {index} * {scalars}u;\n",
+         fn {name}(@builtin(global_invocation_id) id: vec3u) {{\n    \
+             let index = id.x + id.y * {PIXELS_PER_ROW}u;\n    \
+             if index >= arrayLength(&{footprints}) {{\n        return;\n    }}\n    \
+             let outputs = {}({pixel}{argument});\n    \
+             let first = index * {scalars}u;\n",
         names.function
     )
     .expect("a string takes all text");
     for output in &face.outputs {
         let components = output.ty.components();
         for (component, axis) in AXES[..components].iter().enumerate() {
-            let mut path = format!("{outputs}.{}", output.field);
+            let mut path = format!("outputs.{}", output.field);
             if components > 1 {
                 path = format!("{path}.{axis}");
             }
             let value = as_f32(output.scalar, &path);
             let at = output.first as usize + component;
-            writeln!(out, "    {pixels}[{first} + {at}u] = {value};")
+            writeln!(out, "    {pixels}[first + {at}u] = {value};")
                 .expect("a string takes all text");
         }
     }
@@ -415,13 +401,11 @@ fn push_fragment(
     face: &Face,
     argument: &str,
 ) {
-    let [uv, xyz, footprint, position, outputs] =
-        ["uv", "xyz", "footprint", "position", "outputs"].map(|name| names.local(name));
     let means: Vec<&OutputField> = face.outputs.iter().filter(|o| !o.variance).collect();
     let colors: Vec<String> = (means.iter())
         .map(|output| {
             let components = output.ty.components();
-            let path = format!("{outputs}.{}", output.field);
+            let path = format!("outputs.{}", output.field);
             let part = |axis: &str| as_f32(output.scalar, &format!("{path}.{axis}"));
             match components {
                 1 => format!("vec4f(vec3f({}), 1.0)", as_f32(output.scalar, &path)),
@@ -449,23 +433,20 @@ fn push_fragment(
         out.push_str("}\n\n");
         (targets.clone(), format!("{targets}({})", colors.join(", ")))
     };
-    let (input, declared, place) = if face.position {
+    let (input, position, place) = if face.position {
         (
-            format!(", @location(1) {xyz}: vec3f"),
-            format!(
-                "    let {position} = \
-                 Position(vec3i(0i, 0i, 0i), {xyz}, dpdx({xyz}), dpdy({xyz}));\n"
-            ),
-            format!(", {position}"),
+            ", @location(1) xyz: vec3f",
+            "    let position = Position(vec3i(0i, 0i, 0i), xyz, dpdx(xyz), dpdy(xyz));\n",
+            ", position",
         )
     } else {
-        Default::default()
+        ("", "", "")
     };
     write!(
         out,
-        "@fragment\nfn {name}(@location(0) {uv}: vec2f{input}) -> {result} {{\n    \
-             let {footprint} = Footprint(vec2i(0i, 0i), {uv}, dpdx({uv}), dpdy({uv}));\n{declared}    \
-             let {outputs} = {}({footprint}{place}{argument});\n    return {value};\n}}\n",
+        "@fragment\nfn {name}(@location(0) uv: vec2f{input}) -> {result} {{\n    \
+             let footprint = Footprint(vec2i(0i, 0i), uv, dpdx(uv), dpdy(uv));\n{position}    \
+             let outputs = {}(footprint{place}{argument});\n    return {value};\n}}\n",
         names.function
     )
     .expect("a string takes all text");

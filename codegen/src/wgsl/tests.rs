@@ -308,7 +308,7 @@ fn a_graph_may_be_called_as_what_the_entry_points_hold() {
         for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
             let shader = emit(&program, &Options { entry });
             assert_valid(&shader.source);
-            let function = format!("fn {name}(footprint: Footprint");
+            let function = format!("fn {name}_value(footprint: Footprint");
             assert!(shader.source.contains(&function), "{}", shader.source);
         }
     }

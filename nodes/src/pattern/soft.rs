@@ -62,7 +62,8 @@ impl<'b> Edge<'b> {
     fn seen_from(&self, spread: &Spread<'b>, wide: Float<'b>) -> (Float<'b>, Float<'b>, Float<'b>) {
         let [xx, xy, yy] = *spread.covariance;
         let along = self.normal.dot(spread.covariance.times(self.normal));
-        let total = xx + yy + 1e-24;
+        // The square of what is added is a normal number in f32: of no footprint nothing is 0/0.
+        let total = xx + yy + 1e-18;
         // 1 if round, 0 if a line.
         let round = ((xx * yy - xy.square()) * 4.0 / total.square()).clamp(0.0, 1.0);
         let least = total * (0.363_380_2 - 0.148_778_4 * round);

@@ -177,7 +177,8 @@ impl Truth {
             }
             // In steps, so that the last digits of a platform's functions do not show.
             let kept = between.max(0.0) / (between.max(0.0) + within).max(1e-30);
-            if is_steady && within > 0.0 && kept.is_finite() {
+            // The finest band holds all that is finer, of which a point is right.
+            if is_steady && band > 0 && within > 0.0 && kept.is_finite() {
                 (64.0 * kept).round() as f32 / 64.0
             } else {
                 1.0
