@@ -72,15 +72,10 @@ impl<'b> Edge<'b> {
         let far = square * 1.141_6 - 1.1 + 2.1 * near;
         let variance = (along - (along - least) / far).max(0.0);
         let mean = (self.centre.square() + (total - variance).max(0.0)).sqrt();
-        let always = match self.size {
-            None => round,
-            Some(_) => total.literal(0.0),
-        };
-        let share = 1.0 - (1.0 - always) * (1.0 - wide);
         (
-            self.distance + share * (self.centre - mean),
-            along + share * (variance - along),
-            1.0 + share * ((self.centre / mean).min(1.0) - 1.0),
+            self.distance + wide * (self.centre - mean),
+            along + wide * (variance - along),
+            1.0 + wide * ((self.centre / mean).min(1.0) - 1.0),
         )
     }
 
