@@ -40,12 +40,20 @@ impl<'b> Arguments<'b> {
         }
     }
 
-    /// Of a function that reads where a point is, but no input of the graph.
-    pub(super) fn of_place(footprint: Place<'b, 2>) -> Self {
+    /// Of a function that reads where a point is, with the inputs of the graph at their defaults.
+    pub(super) fn of_place(b: &'b Builder, graph: &Graph, footprint: Place<'b, 2>) -> Self {
+        let parameters = graph.parameters.iter().flat_map(|parameter| {
+            let of = move |x: f32| match parameter.ty {
+                Type::Integer => b.int(x as i32).into(),
+                Type::Boolean => b.literal(x != 0.0).into(),
+                _ => b.float(x).into(),
+            };
+            parameter.value.numbers().into_iter().map(of)
+        });
         Self {
             footprint,
             position: None,
-            parameters: Vec::new(),
+            parameters: parameters.collect(),
         }
     }
 

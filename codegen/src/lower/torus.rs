@@ -40,7 +40,8 @@ pub(super) fn found(compiler: &Compiler<'_>, index: usize) -> Option<Periods> {
     let entry = |nodes: &[usize]| {
         Function::new(&alone(compiler, |compiler, module| {
             let b = &compiler.builder("region", "Nodes at a point.");
-            let arguments = Arguments::of_place(Place::declare(b, &FOOTPRINT));
+            let place = Place::declare(b, &FOOTPRINT);
+            let arguments = Arguments::of_place(b, compiler.graph, place);
             let algebra = Algebra::new(b, Mode::Point);
             let mut lower = Lower::with(compiler, module, algebra, arguments);
             let bundle = values(&mut lower, &region, nodes);
@@ -143,7 +144,7 @@ fn function(
         p.dot(Vec2(row))
     });
     let place = Place::at_point(b, at);
-    let arguments = Arguments::of_place(place);
+    let arguments = Arguments::of_place(b, compiler.graph, place);
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
     let bundle = values(&mut lower, &region(compiler, index, &[]), &[index]);
     value_results(b, &bundle);
