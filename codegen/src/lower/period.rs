@@ -26,6 +26,8 @@ const IRRATIONAL: f64 = 0.366_025_403_784_438_6;
 /// Places where a displacement is tried first, and those that it must stand afterwards.
 const TRIED: usize = 48;
 const PROVED: usize = 1024;
+/// How far away a function must be the same after so many periods, in uv.
+const FAR: f64 = 16.0;
 /// The share of places that may lie beside an edge.
 const EDGES: f64 = 0.01;
 /// How far values may be apart, relative to their extent.
@@ -64,8 +66,10 @@ impl Function {
     fn repeats(&mut self, by: [f64; 2], count: usize, extent: &[f64]) -> bool {
         let places: Vec<[f64; 2]> = places().take(count).collect();
         let values = self.at(&places);
-        // An odd and an even number of periods, to both sides.
-        [1.0, -2.0].into_iter().all(|times| {
+        // An odd and an even number of periods, to both sides; and so many that they lead far away: what
+        // changes slowly is nearly the same a short step aside, and repeats nothing.
+        let many = (FAR / by[0].hypot(by[1])).ceil().max(3.0);
+        [1.0, -2.0, many].into_iter().all(|times| {
             let displaced: Vec<[f64; 2]> = (places.iter())
                 .map(|p| [p[0] + times * by[0], p[1] + times * by[1]])
                 .collect();
@@ -215,5 +219,51 @@ fn balanced((first, of_first): ([f64; 2], bool), (second, of_second): ([f64; 2],
         (true, false) => [first, as_long(second, first)],
         (false, true) => [as_long(first, second), second],
         _ => [first, second],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ir::{Builder, FOOTPRINT, Float};
+    use crate::lower::place::Place;
+
+    /// A function of u and v.
+    fn function(of: impl for<'b> Fn([Float<'b>; 2]) -> Float<'b>) -> Function {
+        let mut module = Module::default();
+        let b = &Builder::new("function", "A function of position.");
+        let place = Place::<2>::declare(b, &FOOTPRINT);
+        let at = [0, 1].map(|axis| place.cell[axis].to_float() + place.fraction[axis]);
+        b.result("value", of(at));
+        b.finish(&mut module);
+        Function::new(&module)
+    }
+
+    const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+
+    fn fract(x: Float<'_>) -> Float<'_> {
+        x - x.floor()
+    }
+
+    #[test]
+    fn a_period_is_found_though_no_step_is_as_short() {
+        let mut cells = function(|[u, v]| fract(u * 4.0).min(fract(v * 2.0)));
+        let [first, second] = periods(&mut cells, &AXES, &[1.0]).expect("periods");
+        assert!((first[0].abs() - 0.25).abs() < 1e-9 && first[1].abs() < 1e-9);
+        assert!((second[1].abs() - 0.5).abs() < 1e-9 && second[0].abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_does_not_change_along_a_direction_has_a_period_as_long_as_the_other() {
+        let mut stripes = function(|[u, _]| fract(u * 2.0));
+        let [first, second] = periods(&mut stripes, &AXES, &[1.0, 0.001]).expect("periods");
+        assert!((first[0].abs() - 0.5).abs() < 1e-9, "{first:?}");
+        assert!((second[1].abs() - 0.5).abs() < 1e-9, "{second:?}");
+    }
+
+    #[test]
+    fn what_changes_slowly_does_not_repeat_at_a_short_step() {
+        let mut hill = function(|[u, v]| 1.0 / (1.0 + (u * u + v * v) * 0.01));
+        assert_eq!(periods(&mut hill, &AXES, &[1.0, 0.001]), None);
     }
 }

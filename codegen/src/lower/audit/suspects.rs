@@ -12,6 +12,7 @@ use rustc_hash::FxHashMap;
 
 /// The most nodes among which the beginning of an error is looked for.
 const SEARCHED: usize = 2000;
+
 /// Whether no input of the graph shapes each node.
 pub(super) fn steady(graph: &Graph) -> Vec<bool> {
     let mut steady: Vec<bool> = Vec::with_capacity(graph.nodes.len());
