@@ -46,6 +46,17 @@ pub struct Footprint {
     pub dv: [f32; 2],
 }
 
+impl Footprint {
+    /// A point, which has no footprint.
+    pub fn point(at: [f64; 2]) -> Self {
+        Self {
+            cell: at.map(|x| x.floor() as i32),
+            uv: at.map(|x| (x - x.floor()) as f32),
+            ..Self::default()
+        }
+    }
+}
+
 /// Where a pixel's centre lies in space, and how that changes from pixel to pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Position {

@@ -408,6 +408,24 @@ impl<'g, 'b> Lower<'g, 'b> {
         self.run_nodes(uses);
     }
 
+    /// Lowers a node and what it depends on, as if nothing else were read.
+    fn run_alone(&mut self, index: usize) -> Bundle<'b> {
+        let graph = self.compiler.graph;
+        let mut uses = vec![0; graph.nodes.len()];
+        uses[index] = 1;
+        for node in fusion::region(self.compiler, index, &[]) {
+            for input in &graph.nodes[node].inputs {
+                if let Source::Node(id) = input.source {
+                    uses[id.index()] += 1;
+                }
+            }
+        }
+        self.run_nodes(uses);
+        self.bundles[index]
+            .take()
+            .expect("what is asked for is read once more than by its readers")
+    }
+
     /// Lowers the nodes that something uses, `uses` times each.
     fn run_nodes(&mut self, mut uses: Vec<u32>) {
         let compiler = self.compiler;

@@ -8,6 +8,7 @@
 //! for a few, which lie beside an edge.
 
 use super::Compiler;
+use super::place::scattered;
 use crate::cpu::{Evaluator, Footprint, Scratch};
 use crate::ir::Module;
 use mipless_graph::{Literal, Source};
@@ -50,13 +51,7 @@ impl Function {
 
     /// The components at points, one vector each.
     pub(super) fn at(&mut self, points: &[[f64; 2]]) -> Vec<Vec<f64>> {
-        let footprints: Vec<Footprint> = (points.iter())
-            .map(|at| Footprint {
-                cell: at.map(|x| x.floor() as i32),
-                uv: at.map(|x| (x - x.floor()) as f32),
-                ..Footprint::default()
-            })
-            .collect();
+        let footprints: Vec<Footprint> = (points.iter()).map(|&at| Footprint::point(at)).collect();
         let mut values = Vec::new();
         (self.evaluator).evaluate_footprints(&mut self.scratch, &footprints, &[], &mut values);
         values
@@ -84,12 +79,9 @@ impl Function {
     }
 }
 
-/// Places in the squares around the origin: the R2 sequence (Roberts 2018).
+/// Places in the squares around the origin.
 fn places() -> impl Iterator<Item = [f64; 2]> {
-    (1..).map(|i: u32| {
-        [0.754_877_666_246_692_8, 0.569_840_290_998_053_2]
-            .map(|step| 12.0 * (0.5 + f64::from(i) * step).fract() - 6.0)
-    })
+    (1..).map(|i| scattered(i).map(|x| 12.0 * x - 6.0))
 }
 
 /// The numbers that the nodes of a region hold: steps that something in it may take.

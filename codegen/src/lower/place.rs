@@ -1,6 +1,6 @@
 //! Where a pixel is: the footprint, and the position in space, as arguments.
 
-use crate::ir::{Bool, Builder, Float, Int, Scalar, Scalars, Type};
+use crate::ir::{Bool, Builder, Float, Int, Scalar, Scalars, Type, Uint};
 use std::array;
 
 /// The largest change of texture coordinates per pixel that is told apart from an infinite one.
@@ -116,6 +116,22 @@ impl<'b, const AXES: usize> Place<'b, AXES> {
         }
         self
     }
+}
+
+impl<'b> Place<'b, 2> {
+    /// A hash of where the pixel is.
+    pub(super) fn hashed(self, seed: u32) -> Uint<'b> {
+        let ([x, y], [u, v]) = (self.cell, self.fraction);
+        let words = [x.to_uint(), y.to_uint(), u.bits(), v.bits()];
+        let seed = u.builder().uint(seed);
+        (words.into_iter()).fold(seed, |hash, word| (hash ^ word).scramble())
+    }
+}
+
+/// A place of the unit square that is far from those of other numbers: the R2 sequence (Roberts 2018).
+pub(super) fn scattered(number: usize) -> [f64; 2] {
+    [0.754_877_666_246_692_8, 0.569_840_290_998_053_2]
+        .map(|step| (0.5 + number as f64 * step).fract())
 }
 
 impl<'b, const AXES: usize> Scalars<'b> for Place<'b, AXES> {

@@ -13,12 +13,10 @@
 //! measures them.
 
 use super::bands::Bands;
-use super::fusion::region;
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::float::Float as _;
 use crate::ir::{Builder, Float, FunctionRef, Module, Vec2};
 use crate::moments::{Algebra, Mode, Signal};
-use mipless_graph::Source;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// How many points there are.
@@ -69,11 +67,7 @@ impl<'g, 'b> Lower<'g, 'b> {
         let within = Bands::within(band, sampling.within);
         let everywhere = within.as_constant() == Some(true);
 
-        let ([cell_x, cell_y], [u, v]) = (place.footprint.cell, place.footprint.fraction);
-        let mut turn = b.uint(0x51ed_270b);
-        for word in [cell_x.to_uint(), cell_y.to_uint(), u.bits(), v.bits()] {
-            turn = (turn ^ word).scramble();
-        }
+        let turn = place.footprint.hashed(0x51ed_270b);
         let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
         let start = vec![b.float(0.0); Sums::COUNT * count];
         let points = within.select(POINTS as u32, 0u32);
@@ -144,19 +138,7 @@ fn point_function(compiler: &Compiler<'_>, module: &mut Module, index: usize) ->
     let b = &compiler.builder(format!("{name}_at"), "A part of the texture at a point.");
     let arguments = Arguments::declare(b, graph);
     let mut lower = Lower::with(compiler, module, Algebra::new(b, Mode::Point), arguments);
-    let mut uses = vec![0; graph.nodes.len()];
-    uses[index] = 1;
-    for node in region(compiler, index, &[]) {
-        for input in &graph.nodes[node].inputs {
-            if let Source::Node(id) = input.source {
-                uses[id.index()] += 1;
-            }
-        }
-    }
-    lower.run_nodes(uses);
-    let bundle = lower.bundles[index]
-        .take()
-        .expect("what is asked for is read once more than by its readers");
+    let bundle = lower.run_alone(index);
     value_results(b, &bundle);
     b.finish(module)
 }

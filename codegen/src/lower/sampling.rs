@@ -50,11 +50,7 @@ pub(super) fn supersample(compiler: &Compiler<'_>, module: &mut Module, name: &s
 
     let b = &Builder::new(name, "The texture over a footprint.");
     let arguments = Arguments::declare(b, compiler.graph).finite();
-    let ([cell_x, cell_y], [u, v]) = (arguments.footprint.cell, arguments.footprint.fraction);
-    let mut hash = b.uint(compiler.options.seed ^ 0x9e37_79b9);
-    for word in [cell_x.to_uint(), cell_y.to_uint(), u.bits(), v.bits()] {
-        hash = (hash ^ word).scramble();
-    }
+    let hash = (arguments.footprint).hashed(compiler.options.seed ^ 0x9e37_79b9);
     let second = (hash ^ 0x68bc_21eb).scramble();
     let start = vec![b.float(0.0); state_length];
     let state = b.fold(&sample, b.uint(samples), start, ([hash, second], arguments));

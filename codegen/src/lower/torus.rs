@@ -58,14 +58,8 @@ pub(super) fn found(compiler: &Compiler<'_>, index: usize) -> Option<Periods> {
 
 /// A module of its own, to be evaluated while compiling.
 fn alone(compiler: &Compiler<'_>, build: impl FnOnce(&Compiler<'_>, &mut Module)) -> Module {
-    let Compiler {
-        graph,
-        facts,
-        catalogue,
-        options,
-        ..
-    } = *compiler;
-    let compiler = Compiler::new((graph, facts), catalogue, options);
+    let of = (compiler.graph, compiler.facts);
+    let compiler = Compiler::new(of, compiler.catalogue, compiler.options);
     let mut module = Module::default();
     build(&compiler, &mut module);
     compiler.library.link(&mut module);

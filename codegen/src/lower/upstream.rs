@@ -6,7 +6,6 @@
 //! digits over a footprint of any size: the response over one of next to nothing is the derivative
 //! at a point.
 
-use super::fusion::region;
 use super::place::Place;
 use super::{Compiler, Lower};
 use crate::ir::{Builder, Float, FunctionRef, Module, Sym2, Vec2, dot};
@@ -201,19 +200,7 @@ fn function(
     let b = &compiler.builder(name, doc);
     let mut lower = Lower::new(compiler, module, b, mode);
     lower.measures = true;
-    let mut uses = vec![0; graph.nodes.len()];
-    uses[source.index()] = 1;
-    for index in region(compiler, source.index(), &[]) {
-        for input in &graph.nodes[index].inputs {
-            if let Source::Node(id) = input.source {
-                uses[id.index()] += 1;
-            }
-        }
-    }
-    lower.run_nodes(uses);
-    let bundle = lower.bundles[source.index()]
-        .take()
-        .expect("what is asked for is read once more than by its readers");
+    let bundle = lower.run_alone(source.index());
     for (i, signal) in bundle.iter().enumerate() {
         results(b, i, signal);
     }

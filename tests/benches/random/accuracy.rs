@@ -179,14 +179,6 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
     }
 }
 
-fn at(x: f64, y: f64) -> Footprint {
-    Footprint {
-        cell: [x, y].map(|x| x.floor() as i32),
-        uv: [x, y].map(|x| (x - x.floor()) as f32),
-        ..Footprint::default()
-    }
-}
-
 fn shown(values: Vec<Vec<f32>>) -> Vec<Vec<f64>> {
     let of = |values: Vec<f32>| {
         let show = |x: f32| f64::from(srgb_from_linear(x));
@@ -234,7 +226,9 @@ fn wavelength(texture: &Texture) -> Option<f64> {
         .collect();
     let values = |distance: f64| {
         let moved: Vec<Footprint> = (places.iter())
-            .map(|([x, y], angle)| at(x + distance * angle.cos(), y + distance * angle.sin()))
+            .map(|([x, y], angle)| {
+                Footprint::point([x + distance * angle.cos(), y + distance * angle.sin()])
+            })
             .collect();
         shown(evaluate(texture, Method::Point, 0, &moved))
     };
@@ -265,7 +259,11 @@ fn pixels(sizes: &[f64], wavelength: f64) -> Vec<Footprint> {
             } else {
                 ([size, 0.0], [0.0, size])
             };
-            all.push(Footprint { du, dv, ..at(x, y) });
+            all.push(Footprint {
+                du,
+                dv,
+                ..Footprint::point([x, y])
+            });
         }
     }
     all

@@ -1,8 +1,9 @@
 //! How large a texture's detail is, which says what footprints to audit it at.
 
 use super::super::bands::Bands;
-use super::truth::{displayed, parameters};
-use crate::cpu::{Evaluator, Footprint, Scratch};
+use super::super::place::scattered;
+use super::truth::{ASKEW, displayed, values};
+use crate::cpu::Footprint;
 use crate::ir::Program;
 
 /// Places that distances are measured from.
@@ -15,35 +16,21 @@ const SHARES: [f64; 2] = [0.1, 0.7];
 /// The finest pixel is so many octaves below the finest detail, the largest above the coarsest.
 const BELOW: i32 = 5;
 const ABOVE: i32 = 3;
-/// Directions of unit length, the same numbers everywhere.
-const DIRECTIONS: [[f64; 2]; 4] = [[0.8, 0.6], [-0.6, 0.8], [0.96, -0.28], [0.352, 0.936]];
 
 /// The bands of a texture, and how far away from the origin it is looked at, in uv: from the mean
 /// square difference of its points by their distance (the structure function).
 pub(super) fn bands(point: &Program) -> (Bands, f64) {
     let mut footprints = Vec::with_capacity(PLACES * (DISTANCES + 1));
     for place in 0..PLACES {
-        let number = (place + 1) as f64;
-        let at = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2]
-            .map(|step| 64.0 * (0.5 + number * step).fract() - 32.0);
-        let [x, y] = DIRECTIONS[place % DIRECTIONS.len()];
+        let at = scattered(place + 1).map(|x| 64.0 * x - 32.0);
+        let [x, y] = ASKEW[place % ASKEW.len()].map(f64::from);
         let distances = (0..DISTANCES).map(|i| f64::from(FROM + i as i32).exp2());
         for distance in std::iter::once(0.0).chain(distances) {
-            let at = [at[0] + distance * x, at[1] + distance * y];
-            footprints.push(Footprint {
-                cell: at.map(|x| x.floor() as i32),
-                uv: at.map(|x| (x - x.floor()) as f32),
-                ..Footprint::default()
-            });
+            let there = [at[0] + distance * x, at[1] + distance * y];
+            footprints.push(Footprint::point(there));
         }
     }
-    let mut values = Vec::new();
-    Evaluator::<f32>::of_program(point).evaluate_footprints(
-        &mut Scratch::new(),
-        &footprints,
-        &parameters(point),
-        &mut values,
-    );
+    let values = values(point, &footprints);
     let squares: Vec<f64> = (1..=DISTANCES)
         .map(|distance| {
             let of_place = |values: &[f32]| {

@@ -1,6 +1,7 @@
 //! What is right on a few footprints, and how far values are from it.
 
 use super::super::bands::Bands;
+use super::super::place::scattered;
 use super::super::sampled::{POINTS, Sampling};
 use super::super::{Facts, Method, NodeDef, Options, program};
 use crate::cpu::{Evaluator, Footprint, Scratch};
@@ -16,7 +17,7 @@ const WINDOW: f64 = 32.0;
 /// How much longer the long ones are than wide.
 const RATIO: f32 = 8.0;
 /// Cosines and sines of their directions, the same numbers everywhere.
-const ASKEW: [[f32; 2]; 4] = [[0.8, 0.6], [-0.6, 0.8], [0.96, -0.28], [0.352, 0.936]];
+pub(super) const ASKEW: [[f32; 2]; 4] = [[0.8, 0.6], [-0.6, 0.8], [0.96, -0.28], [0.352, 0.936]];
 /// Points of the truth of a pixel: at first, and where that shows an error.
 pub(super) const GLANCE: u32 = 128;
 pub(super) const LOOK: u32 = 1024;
@@ -28,10 +29,7 @@ pub(super) fn footprints(bands: Bands, distance: f64) -> Vec<Footprint> {
     for band in 0..Bands::COUNT {
         let size = bands.size(band);
         for place in 0..PLACES {
-            // The R2 sequence (Roberts 2018).
-            let number = (band * PLACES + place + 1) as f64;
-            let at = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2]
-                .map(|step| (0.5 + number * step).fract());
+            let at = scattered(band * PLACES + place + 1);
             let extent = match place % 4 {
                 3 => distance.max(WINDOW * f64::from(size)),
                 _ => 0.5 * (WINDOW * f64::from(size)).max(1.0),
@@ -42,10 +40,9 @@ pub(super) fn footprints(bands: Bands, distance: f64) -> Vec<Footprint> {
                 _ => (RATIO, ASKEW[place % ASKEW.len()]),
             };
             footprints.push(Footprint {
-                cell: at.map(|x| x.floor() as i32),
-                uv: at.map(|x| (x - x.floor()) as f32),
                 du: [long * size * cos, long * size * sin],
                 dv: [-size * sin, size * cos],
+                ..Footprint::point(at)
             });
         }
     }
@@ -53,7 +50,7 @@ pub(super) fn footprints(bands: Bands, distance: f64) -> Vec<Footprint> {
 }
 
 /// The defaults of a program's parameters.
-pub(super) fn parameters(program: &Program) -> Vec<f32> {
+fn parameters(program: &Program) -> Vec<f32> {
     (program.interface.parameters.iter())
         .flat_map(|parameter| parameter.default.iter().copied())
         .collect()
