@@ -8,6 +8,7 @@ mod ahead;
 mod arguments;
 mod audit;
 mod bands;
+mod drawn;
 mod entry;
 mod finish;
 mod function;
@@ -222,6 +223,8 @@ struct Facts {
     sampled: FxHashMap<usize, sampled::Sampling>,
     /// The nodes that repeat, which `auto` reads from maps.
     repeated: FxHashMap<usize, torus::Repeated>,
+    /// The nodes that `auto` draws to their means.
+    drawn: FxHashMap<usize, drawn::Drawn>,
     /// Whether the surface's place shapes each node's output.
     placed: Vec<bool>,
 }
@@ -235,6 +238,7 @@ impl Facts {
             literal: symbols::literal(graph),
             sampled: FxHashMap::default(),
             repeated: FxHashMap::default(),
+            drawn: FxHashMap::default(),
             placed: symbols::placed(graph),
             live,
         }
@@ -498,14 +502,13 @@ impl<'g, 'b> Lower<'g, 'b> {
 
     /// What takes the place of a closed form that the audit found to be wrong.
     fn instead(&mut self, index: usize, closed: &[Signal<'b>]) -> Option<Bundle<'b>> {
-        let repeated = self.repeated(index, closed);
-        match self.sampling(index) {
-            Some(sampling) => {
-                let closed = repeated.unwrap_or_else(|| closed.to_vec());
-                Some(self.sampled(index, &closed, sampling))
-            }
-            None => repeated,
+        let mut found = self.repeated(index, closed);
+        if let Some(sampling) = self.sampling(index) {
+            let closed = found.unwrap_or_else(|| closed.to_vec());
+            found = Some(self.sampled(index, &closed, sampling));
         }
+        let drawn = self.drawn(index, found.as_deref().unwrap_or(closed));
+        drawn.or(found)
     }
 
     fn name(&self, node: &Node, bundle: &Bundle<'b>) {

@@ -28,6 +28,7 @@ pub mod markdown;
 pub mod random;
 pub mod random_graph;
 pub mod reduce;
+pub mod shown;
 pub mod thumbnail;
 pub mod timing;
 pub mod tolerance;
