@@ -11,10 +11,14 @@ use mipless_runtime::gpu::{AdapterChoice, Gpu, GpuError, LARGEST_PROGRAM};
 use mipless_runtime::image::Image;
 use mipless_runtime::job::Job;
 use mipless_runtime::view::{Flat, Plane, Size, View};
-use mipless_tests::case::{Case, all};
+use mipless_tests::case::{Case, all, random};
+use mipless_tests::random_graph::{asked as asked_graphs, methods};
 use mipless_tests::tolerance::{DEVICE, F32_AGREES, LEFT_OUT};
 use mipless_tests::{METHODS, asked, name_of};
 use std::sync::Arc;
+
+/// Random graphs that the device draws, unless `MIPLESS_GRAPHS` says how many.
+const RANDOM: u64 = 40;
 
 fn main() {
     let arguments = Arguments::from_args();
@@ -39,6 +43,12 @@ fn main() {
             let run = move || device(gpu?.as_ref(), &on_device, method);
             trials.push(Trial::test(format!("device_{name}"), run).with_ignored_flag(ignored));
         }
+    }
+    for seed in 0..asked_graphs().unwrap_or(RANDOM) {
+        let gpu = gpu.clone();
+        let run = move || random_on_device(gpu?.as_ref(), seed);
+        let name = format!("device_random_{seed}");
+        trials.push(Trial::test(name, run).with_ignored_flag(ignored));
     }
     let run = move || refuses(gpu?.as_ref());
     trials.push(Trial::test("device_refuses_what_takes_minutes", run).with_ignored_flag(ignored));
@@ -69,6 +79,15 @@ fn refuses(gpu: &Gpu) -> Result<(), Failed> {
         Err(error) => Err(format!("refused for another reason: {error}").into()),
         Ok(_) => Err("a shader of 2,400 nodes was compiled".into()),
     }
+}
+
+/// A random graph, by its methods.
+fn random_on_device(gpu: &Gpu, seed: u64) -> Result<(), Failed> {
+    let case = random(seed);
+    for method in methods(seed) {
+        device(gpu, &case, method)?;
+    }
+    Ok(())
 }
 
 /// A picture that recedes to the horizon, so that it holds footprints of every size, and a flat one.
