@@ -40,7 +40,7 @@ fn main() {
                 oracle(&on_cpu, method)
             }));
             let (on_device, gpu) = (Arc::clone(&case), gpu.clone());
-            let run = move || device(gpu?.as_ref(), &on_device, method);
+            let run = move || device(gpu?.as_ref(), &on_device, method, 0.0);
             trials.push(Trial::test(format!("device_{name}"), run).with_ignored_flag(ignored));
         }
     }
@@ -85,7 +85,7 @@ fn refuses(gpu: &Gpu) -> Result<(), Failed> {
 fn random_on_device(gpu: &Gpu, seed: u64) -> Result<(), Failed> {
     let case = random(seed);
     for method in methods(seed) {
-        device(gpu, &case, method)?;
+        device(gpu, &case, method, LEFT_OUT)?;
     }
     Ok(())
 }
@@ -163,7 +163,9 @@ fn oracle(case: &Case, method: Method) -> Result<(), Failed> {
     verdict(&failures)
 }
 
-fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
+/// `left_out` is the share of the pixels that may be further off: in a random graph that an edge runs
+/// through.
+fn device(gpu: &Gpu, case: &Case, method: Method, left_out: f64) -> Result<(), Failed> {
     let program = compile(case, method);
     let pipeline = gpu.pipeline(&program)?;
     let mut failures = Vec::new();
@@ -172,6 +174,7 @@ fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
         let roundings = rounding(&single, &render(&program, &view));
         let (image, _) = gpu.render(&pipeline, &view, size(), Job::default())?;
         let (mut worst, mut place) = (0.0, String::new());
+        let mut beyond = vec![false; size().pixels()];
         let channels = image
             .channels()
             .iter()
@@ -180,7 +183,11 @@ fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
         for ((found, wanted), name) in channels {
             for (pixel, (&found, &wanted)) in found.iter().zip(wanted).enumerate() {
                 let difference = difference(found.into(), wanted.into());
-                if roundings[pixel] <= F32_AGREES && difference > worst {
+                if roundings[pixel] > F32_AGREES {
+                    continue;
+                }
+                beyond[pixel] |= difference > DEVICE;
+                if difference > worst {
                     worst = difference;
                     place = format!("{name} of pixel {pixel}: {found} for {wanted}");
                 }
@@ -192,7 +199,8 @@ fn device(gpu: &Gpu, case: &Case, method: Method) -> Result<(), Failed> {
             view.name()
         );
         report(&line);
-        if worst > DEVICE {
+        let share = beyond.iter().filter(|&&is| is).count() as f64 / beyond.len() as f64;
+        if share > left_out {
             failures.push(line);
         }
     }

@@ -36,7 +36,7 @@ const COMPILERS: [Compiler; 2] = [
 
 /// Random graphs of which other compilers see every shader, unless `MIPLESS_GRAPHS` says how many;
 /// that naga takes those of 300 graphs is a law (`composition`).
-const RANDOM: u64 = 60;
+const RANDOM: u64 = 30;
 
 fn main() {
     let arguments = Arguments::from_args();
