@@ -1,7 +1,8 @@
 //! The laws of composition: what holds for every graph that the check accepts, whoever wrote it.
 
-use crate::measured::{Effort, Measured, wavelength};
+use crate::measured::{Effort, Measured};
 use crate::random::Random;
+use crate::shown::wavelength;
 use crate::timing::defaults;
 use crate::tolerance::{FAR_FIELD, LEFT_OUT, RANGE, ROUNDING, SPREAD, VANISHING};
 use mipless::target::{Target, translate, validate};

@@ -31,6 +31,7 @@ pub mod mutation;
 pub mod random;
 pub mod random_graph;
 pub mod reduce;
+pub mod shown;
 pub mod thumbnail;
 pub mod timing;
 pub mod tolerance;

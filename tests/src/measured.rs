@@ -6,16 +6,14 @@
 //! what a display shows: limited to 0 to 1, and sRGB.
 
 use crate::random::Random;
-use mipless::{Footprint, Method, Options, Texture, TextureEvaluator};
-use mipless_runtime::srgb::srgb_from_linear;
-use std::f64::consts::{SQRT_2, TAU};
+use crate::shown::{evaluate, mean, rms, shown, truths, variance};
+use mipless::{Footprint, Method, Texture};
+use std::f64::consts::SQRT_2;
 
 /// Pixels, in wavelengths.
 const BAND: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 /// The pixels of the frame far away, in wavelengths.
 const FAR: f64 = 64.0;
-/// A graph whose values spread less over its places shows nothing.
-const VISIBLE: f64 = 0.01;
 
 /// By how many numbers a graph is measured.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +39,7 @@ impl Measured {
     /// The errors over pixels of a quarter to four wavelengths.
     pub fn of(texture: &Texture, wavelength: f64, effort: Effort) -> Self {
         let band = band(wavelength, effort);
-        let truths = truths(texture, effort, &band).map(shown);
+        let truths = truths(texture, effort.samples, &band).map(shown);
         let truth = mean(&truths);
         let error = |method| rms(&shown(evaluate(texture, method, 0, &band)), &truth);
         Self {
@@ -61,7 +59,7 @@ impl Measured {
 /// components.
 pub fn far_bias(texture: &Texture, wavelength: f64, effort: Effort) -> f64 {
     let frame = pixels(&[FAR, FAR], wavelength, effort);
-    let truth = mean(&truths(texture, effort, &frame).map(shown));
+    let truth = mean(&truths(texture, effort.samples, &frame).map(shown));
     let far = shown(evaluate(texture, Method::Auto, 0, &frame));
     let average = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
     let biases = (far.iter().zip(&truth)).map(|(a, b)| (average(a) - average(b)).abs());
@@ -76,79 +74,10 @@ pub fn relative(texture: &Texture, band: &[Footprint], effort: Effort) -> Option
         values.into_iter().map(of).collect()
     };
     let spread = variance(&exact(evaluate(texture, Method::Point, 0, band))).sqrt();
-    let truth = mean(&truths(texture, effort, band).map(exact));
+    let truth = mean(&truths(texture, effort.samples, band).map(exact));
     let found = exact(evaluate(texture, Method::Auto, 0, band));
     let error = rms(&found, &truth) / spread.max(1e-6);
     error.is_finite().then_some(error)
-}
-
-fn shown(values: Vec<Vec<f32>>) -> Vec<Vec<f64>> {
-    let of = |values: Vec<f32>| {
-        let show = |x: f32| f64::from(srgb_from_linear(x));
-        values.into_iter().map(show).collect()
-    };
-    values.into_iter().map(of).collect()
-}
-
-fn evaluator(texture: &Texture, method: Method, seed: u32) -> TextureEvaluator {
-    texture.evaluator(&Options {
-        method,
-        seed,
-        ..Options::default()
-    })
-}
-
-fn evaluate(texture: &Texture, method: Method, seed: u32, at: &[Footprint]) -> Vec<Vec<f32>> {
-    evaluator(texture, method, seed).evaluate(at)
-}
-
-/// Mean and variance over all components together, each about its own mean.
-fn variance(values: &[Vec<f64>]) -> f64 {
-    let of = |values: &Vec<f64>| {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n
-    };
-    values.iter().map(of).sum::<f64>() / values.len() as f64
-}
-
-fn rms(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    let pairs = a.iter().flatten().zip(b.iter().flatten());
-    let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (a, b)| {
-        (sum + (a - b).powi(2), count + 1.0)
-    });
-    (sum / f64::max(count, 1.0)).sqrt()
-}
-
-/// The wavelength of what a graph shows: six times the least distance at which its values are
-/// correlated by a half, as a cosine's are at a sixth of its wavelength. `None` if it shows nothing.
-pub fn wavelength(texture: &Texture) -> Option<f64> {
-    let mut random = Random::new(3);
-    let places: Vec<([f64; 2], f64)> = (0..384)
-        .map(|_| {
-            let place = [0, 1].map(|_| random.within(-8.0, 8.0));
-            (place, TAU * random.unit())
-        })
-        .collect();
-    let mut point = evaluator(texture, Method::Point, 0);
-    let mut values = |distance: f64| {
-        let moved: Vec<Footprint> = (places.iter())
-            .map(|([x, y], angle)| {
-                Footprint::point([x + distance * angle.cos(), y + distance * angle.sin()])
-            })
-            .collect();
-        shown(point.evaluate(&moved))
-    };
-    let start = values(0.0);
-    let spread = variance(&start);
-    if spread.sqrt() < VISIBLE {
-        return None;
-    }
-    let distances = (-28..=6).map(|k| 2.0_f64.powf(0.5 * f64::from(k)));
-    let half = distances
-        .map(|distance| (distance, rms(&start, &values(distance)).powi(2)))
-        .find(|&(_, difference)| difference >= spread);
-    Some(half.map_or(8.0, |(distance, _)| 6.0 * distance))
 }
 
 /// Pixels of a quarter to four wavelengths.
@@ -179,14 +108,4 @@ fn pixels(sizes: &[f64], wavelength: f64, effort: Effort) -> Vec<Footprint> {
         }
     }
     all
-}
-
-/// Two independent truths.
-fn truths(texture: &Texture, effort: Effort, pixels: &[Footprint]) -> [Vec<Vec<f32>>; 2] {
-    [1, 2].map(|seed| evaluate(texture, Method::Supersample(effort.samples), seed, pixels))
-}
-
-fn mean([a, b]: &[Vec<Vec<f64>>; 2]) -> Vec<Vec<f64>> {
-    let of = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
-    a.iter().zip(b).map(of).collect()
 }

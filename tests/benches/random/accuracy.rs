@@ -1,11 +1,13 @@
 //! How far random graphs are from the truth.
 use super::write;
-use mipless::{Footprint, Texture};
+use mipless::{Footprint, Options, Texture};
 use mipless_tests::asked;
 use mipless_tests::case::load;
-use mipless_tests::measured::{Effort, Measured, band, far_bias, relative, wavelength};
+use mipless_tests::measured::{Effort, Measured, band, far_bias, relative};
 use mipless_tests::random_graph::of_seed;
 use mipless_tests::reduce::reduced;
+use mipless_tests::shown::wavelength;
+use mipless_tests::tolerance::SOURCE;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -42,6 +44,8 @@ struct Row {
     wavelength: f64,
     errors: Measured,
     bias: f64,
+    /// What the audit predicts of `auto`, over all components together.
+    predicted: f64,
 }
 
 impl Row {
@@ -53,6 +57,7 @@ impl Row {
             wavelength,
             errors: Measured::of(texture, wavelength, EFFORT),
             bias: far_bias(texture, wavelength, EFFORT),
+            predicted: predicted(texture),
         })
     }
 
@@ -174,6 +179,15 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
     println!("panics: {} {panicked:?}", panicked.len());
     println!("`auto` worse than `point` by more than the floor: {worse}; by 0.005 more: {clearly}");
     println!("`auto` above 0.05: {bad}");
+    let covered = rows
+        .iter()
+        .filter(|row| row.errors.auto <= row.predicted)
+        .count();
+    let ratio = quantile(&|row| row.predicted / row.errors.auto.max(1e-3), 0.5);
+    println!(
+        "the prediction covers the error in {covered} of {}; its median is {ratio:.1} times the error",
+        rows.len()
+    );
     println!("\n| | median | 95 % | worst |\n|---|---|---|---|");
     let columns: [Column<'_>; 4] = [
         ("auto", &|row| row.errors.auto),
@@ -185,6 +199,21 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
         let [median, most, worst] = [0.5, 0.95, 1.0].map(|share| quantile(of, share));
         println!("| {name} | {median:.4} | {most:.4} | {worst:.4} |");
     }
+}
+
+/// The root mean square over components of the errors that the audit predicts; where every rule is
+/// exact, what filtering the sources themselves is off by.
+fn predicted(texture: &Texture) -> f64 {
+    let audit = texture.audit(&Options::default());
+    let (mut squares, mut count) = (0.0, 0.0);
+    for (index, output) in texture.outputs().iter().enumerate() {
+        let audited = audit.outputs.iter().find(|audited| audited.output == index);
+        let error = audited.map_or(SOURCE, |audited| audited.predicted());
+        let components = output.ty.components() as f64;
+        squares += components * error * error;
+        count += components;
+    }
+    f64::sqrt(squares / f64::max(count, 1.0))
 }
 
 /// Writes the smallest graph that is as much worse by `auto` than by `point`, by a half.
