@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The largest file that is read, in bytes: a graph of a million nodes takes about a tenth.
+/// The largest file that is read, in bytes: a graph of 131,072 nodes takes about a tenth.
 const LARGEST: u64 = 1 << 30;
 
 /// Whether a graph may hold signals that only sampling filters.

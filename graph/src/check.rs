@@ -216,7 +216,7 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
     let mut warnings = Vec::new();
     let mut incoming = Vec::new();
     for (index, node) in graph.nodes.iter().enumerate() {
-        let id = NodeId(u32::try_from(index).expect("at most a million nodes"));
+        let id = NodeId(u32::try_from(index).expect("no more nodes than are allowed"));
         let view = View {
             graph: &graph,
             node,

@@ -26,8 +26,9 @@ pub use literal::linear_from_srgb;
 pub(crate) use literal::{color, from_numbers};
 pub(crate) use range::{outside, shown_bounds};
 
-/// How many nodes a graph may have when its sub-graphs are expanded.
-pub const MAX_NODES: u64 = 1_000_000;
+/// How many nodes a graph may have when its sub-graphs are expanded: what is accepted is compiled, and
+/// takes by `auto` about 20 KB a node.
+pub const MAX_NODES: u64 = 1 << 17;
 
 /// How deep sub-graphs may be nested.
 pub const MAX_NESTING: usize = 256;

@@ -35,6 +35,9 @@ use std::{env, fs};
 /// Pixels of which values are printed.
 const SIZES: [f32; 7] = [0.0, 1e-4, 0.01, 0.1, 1.0, 100.0, 1e6];
 
+/// Graphs of each kind of which it is printed what was found.
+const SHOWN: usize = 10;
+
 /// Questions that reducing one graph may ask.
 const QUESTIONS: usize = 300;
 
@@ -144,8 +147,9 @@ fn laws(count: u64, first: u64) {
         println!("      seed {seed} took {time:.1} s");
     }
     for (kind, cases) in &kinds {
-        println!("{:5} {kind}", cases.len());
-        for (seed, violation) in cases.iter().take(3) {
+        let seeds: Vec<String> = cases.iter().map(|(seed, _)| seed.to_string()).collect();
+        println!("{:5} {kind}: {}", cases.len(), seeds.join(" "));
+        for (seed, violation) in cases.iter().take(SHOWN) {
             println!("        seed {seed}: {}", violation.what);
         }
     }

@@ -1,5 +1,6 @@
 //! The graphs that every suite runs over: those of `graphs/`, the example of every node, and a few more.
 
+use crate::random_graph::of_seed;
 use crate::root;
 use mipless::{Diagnostic, Folder, Texture};
 use mipless_graph::CheckOptions;
@@ -8,7 +9,8 @@ use std::fs;
 /// One graph.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The name of its file without extension, or `example_` and the name of the node.
+    /// The name of its file without extension, `example_` and the name of the node, or `random_` and
+    /// the seed.
     pub name: String,
     /// The JSON text.
     pub text: String,
@@ -32,6 +34,19 @@ impl Case {
             text,
             texture,
         }
+    }
+}
+
+/// A random graph, as the one of its seed.
+///
+/// # Panics
+/// If no graph of the seed is accepted.
+pub fn random(seed: u64) -> Case {
+    let (graph, texture) = of_seed(seed);
+    Case {
+        name: format!("random_{seed}"),
+        text: graph.to_string(),
+        texture,
     }
 }
 

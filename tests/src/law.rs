@@ -1,6 +1,8 @@
 //! The laws of composition: what holds for every graph that the check accepts, whoever wrote it.
 
+use crate::measured::{Effort, Measured};
 use crate::random::Random;
+use crate::shown::wavelength;
 use crate::timing::defaults;
 use crate::tolerance::{FAR_FIELD, LEFT_OUT, RANGE, ROUNDING, SPREAD, VANISHING};
 use mipless::target::{Target, translate, validate};
@@ -37,11 +39,13 @@ pub enum Law {
     Far,
     /// f32 gives what f64 does, where small changes of the place change little.
     Rounding,
+    /// `auto` is no further from the truth than a point is, but for what the truth itself is off.
+    Worse,
 }
 
 impl Law {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Panics,
         Self::Ir,
         Self::Shader,
@@ -52,6 +56,7 @@ impl Law {
         Self::Vanishing,
         Self::Far,
         Self::Rounding,
+        Self::Worse,
     ];
 
     /// One word.
@@ -67,6 +72,7 @@ impl Law {
             Self::Vanishing => "vanishing",
             Self::Far => "far",
             Self::Rounding => "rounding",
+            Self::Worse => "worse",
         }
     }
 }
@@ -121,6 +127,7 @@ pub fn violations(texture: &Texture, laws: &[Law], methods: &[Method]) -> Vec<Vi
                     (Law::Rounding, _) => evaluated.rounded(),
                     (Law::Vanishing, Some(points)) => evaluated.at_points(points),
                     (Law::Far, Some(points)) => evaluated.far(points),
+                    (Law::Worse, _) if method == Method::Auto => worse(texture),
                     _ => continue,
                 };
                 if let Some(fault) = faults.first() {
@@ -153,6 +160,23 @@ fn said(payload: &(dyn Any + Send)) -> String {
         .map(|text| (*text).to_owned());
     let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
     text.unwrap_or_else(|| "something that is no text".to_owned())
+}
+
+/// How much of a graph is held against the truth.
+const EFFORT: Effort = Effort {
+    pixels: 12,
+    samples: 128,
+};
+
+/// The errors of a graph that `auto` makes worse.
+fn worse(texture: &Texture) -> Vec<String> {
+    let measured = wavelength(texture).map(|length| Measured::of(texture, length, EFFORT));
+    let worse = measured.filter(|errors| errors.excess() > 0.0);
+    let said = worse.map(|errors| {
+        let Measured { auto, point, floor } = errors;
+        format!("{auto:.4}, where a point is off by {point:.4} and the truth by {floor:.4}")
+    });
+    said.into_iter().collect()
 }
 
 fn compile(texture: &Texture, method: Method) -> Program {

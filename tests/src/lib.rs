@@ -9,6 +9,7 @@
 //! | `stability` | no footprint, however extreme, gives anything but a finite number in range |
 //! | `properties` | random graphs, nodes with any input set, and mutilated documents |
 //! | `composition` | the laws that every graph keeps, by random graphs over the whole catalogue |
+//! | `fuzz` | bytes from outside are taken or refused with a place: documents, IR, settings, pictures |
 //! | `statistics` | what the noises claim of themselves, as hypothesis tests |
 //! | `field` | graphs as strangers write them are filtered, and nowhere worse than a point |
 //! | `bounds` | nodes with two bounds, in any order, given in any way |
@@ -25,6 +26,8 @@ pub mod case;
 pub mod generated;
 pub mod law;
 pub mod markdown;
+pub mod measured;
+pub mod mutation;
 pub mod random;
 pub mod random_graph;
 pub mod reduce;

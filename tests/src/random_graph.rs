@@ -8,9 +8,10 @@ mod literal;
 mod repair;
 mod weight;
 
+use crate::METHODS;
 use crate::random::Random;
 use literal::{literal, rounded, stops};
-use mipless::{NodeSpec, Texture, Type};
+use mipless::{Method, NodeSpec, Texture, Type};
 use mipless_graph::{Default, OutputType, PortSpec, PortType};
 pub use repair::repaired;
 use serde_json::{Map, Value, json};
@@ -72,6 +73,20 @@ pub fn of_seed(seed: u64) -> (Value, Texture) {
     let valid = |_| repaired(graph(&mut random, nodes as usize));
     let found = (0..20).find_map(valid);
     found.unwrap_or_else(|| panic!("no graph of the seed {seed} is accepted"))
+}
+
+/// How many graphs are asked for by `MIPLESS_GRAPHS`, if any number is.
+pub fn asked() -> Option<u64> {
+    std::env::var("MIPLESS_GRAPHS").ok()?.parse().ok()
+}
+
+/// By which methods the graph of a seed is looked at: `auto`, which holds `local` and `quad`, and the
+/// others in turns; all of them where a number of graphs is asked for.
+pub fn methods(seed: u64) -> Vec<Method> {
+    if asked().is_some() {
+        return METHODS.to_vec();
+    }
+    vec![Method::Auto, METHODS[seed as usize % METHODS.len()]]
 }
 
 /// The JSON text of a random graph of so many nodes beside its sub-graphs. The check may refuse it.

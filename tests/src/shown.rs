@@ -2,7 +2,7 @@
 //! and how far values are from each other.
 
 use crate::random::Random;
-use mipless::{Footprint, Method, Options, Texture};
+use mipless::{Footprint, Method, Options, Texture, TextureEvaluator};
 use mipless_runtime::srgb::srgb_from_linear;
 use std::f64::consts::TAU;
 
@@ -20,12 +20,15 @@ pub fn shown(values: Vec<Vec<f32>>) -> Vec<Vec<f64>> {
 
 /// The values of all components at pixels.
 pub fn evaluate(texture: &Texture, method: Method, seed: u32, at: &[Footprint]) -> Vec<Vec<f32>> {
-    let options = Options {
+    evaluator(texture, method, seed).evaluate(at)
+}
+
+fn evaluator(texture: &Texture, method: Method, seed: u32) -> TextureEvaluator {
+    texture.evaluator(&Options {
         method,
         seed,
         ..Options::default()
-    };
-    texture.evaluator(&options).evaluate(at)
+    })
 }
 
 /// The variance over all components together, each about its own mean.
@@ -57,13 +60,14 @@ pub fn wavelength(texture: &Texture) -> Option<f64> {
             (place, TAU * random.unit())
         })
         .collect();
-    let values = |distance: f64| {
+    let mut point = evaluator(texture, Method::Point, 0);
+    let mut values = |distance: f64| {
         let moved: Vec<Footprint> = (places.iter())
             .map(|([x, y], angle)| {
                 Footprint::point([x + distance * angle.cos(), y + distance * angle.sin()])
             })
             .collect();
-        shown(evaluate(texture, Method::Point, 0, &moved))
+        shown(point.evaluate(&moved))
     };
     let start = values(0.0);
     let spread = variance(&start);

@@ -8,7 +8,8 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use mipless::target::{Target, TranslateError, translate, validate};
 use mipless::wgsl::{Entry, Options as Emission, Stage, emit};
 use mipless::{Method, Options};
-use mipless_tests::case::{Case, all};
+use mipless_tests::case::{Case, all, random};
+use mipless_tests::random_graph::{asked as asked_graphs, methods};
 use mipless_tests::{METHODS, asked, name_of};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -33,6 +34,10 @@ const COMPILERS: [Compiler; 2] = [
     },
 ];
 
+/// Random graphs of which other compilers see every shader, unless `MIPLESS_GRAPHS` says how many;
+/// that naga takes those of 300 graphs is a law (`composition`).
+const RANDOM: u64 = 30;
+
 fn main() {
     let arguments = Arguments::from_args();
     let required = asked("MIPLESS_REQUIRE_COMPILERS");
@@ -56,8 +61,13 @@ fn main() {
                 format!("{}_{}", compiler.program, case.name),
                 Arc::clone(case),
             );
-            let trial = Trial::test(name, move || compile(&case, compiler));
+            let trial = Trial::test(name, move || compile(&case, compiler, &METHODS));
             trials.push(trial.with_ignored_flag(missing && !required));
+        }
+        for seed in 0..asked_graphs().unwrap_or(RANDOM) {
+            let name = format!("{}_random_{seed}", compiler.program);
+            let run = move || compile(&random(seed), compiler, &methods(seed));
+            trials.push(Trial::test(name, run).with_ignored_flag(missing && !required));
         }
     }
     libtest_mimic::run(&arguments, trials).exit();
@@ -111,9 +121,9 @@ fn longest_function(source: &str) -> usize {
     functions.map(statements).max().unwrap_or(0)
 }
 
-fn compile(case: &Case, compiler: Compiler) -> Result<(), Failed> {
+fn compile(case: &Case, compiler: Compiler, methods: &[Method]) -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
-    for method in METHODS {
+    for &method in methods {
         let program = case.texture.compile(&Options {
             method,
             ..Options::default()

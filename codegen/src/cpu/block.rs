@@ -3,6 +3,7 @@
 use super::code::{Code, Step};
 use crate::float::Float;
 use crate::ir::for_each_op;
+use std::any::Any;
 use std::marker::PhantomData;
 use std::mem::swap;
 
@@ -228,18 +229,35 @@ impl Level {
 /// A function that runs steps.
 pub(super) type Runner<F> = fn(&[Step<u16>], &mut Registers<F>, &[Box<[F]>]);
 
-/// The function that runs steps at `level`.
+/// The function that runs steps at `level`. The banks' are made here by functions that are not
+/// generic, so that they are compiled and optimised with this crate, and not with each that evaluates.
 ///
 /// # Panics
 /// If this machine does not have the level.
 pub(super) fn runner<F: Float>(level: Level) -> Runner<F> {
     assert!(level.is_available(), "this machine does not have {level:?}");
+    let banks: [&dyn Any; 2] = [&single(level), &double(level)];
+    let runner = banks.iter().find_map(|bank| bank.downcast_ref());
+    *runner.expect("the banks are f32 and f64")
+}
+
+#[inline(never)]
+fn single(level: Level) -> Runner<f32> {
+    of_bank(level)
+}
+
+#[inline(never)]
+fn double(level: Level) -> Runner<f64> {
+    of_bank(level)
+}
+
+fn of_bank<F: Float>(level: Level) -> Runner<F> {
     match level {
         Level::Baseline => run::<F>,
-        // SAFETY: the assertion above found the instruction set on this machine.
+        // SAFETY: the assertion of `runner` found the instruction set on this machine.
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 => |steps, registers, tables| unsafe { run_avx2(steps, registers, tables) },
-        // SAFETY: the assertion above found the instruction set on this machine.
+        // SAFETY: the assertion of `runner` found the instruction set on this machine.
         #[cfg(target_arch = "x86_64")]
         Level::Avx512 => |steps, registers, tables| unsafe { run_avx512(steps, registers, tables) },
         #[cfg(not(target_arch = "x86_64"))]

@@ -1,39 +1,37 @@
 //! How far random graphs are from the truth.
-//!
-//! The truth of a pixel is the mean of two independent ones of 1024 samples, their own error that of
-//! the two against each other over √2. Errors are the root mean square over pixels and components, of
-//! what a display shows: limited to 0 to 1, and sRGB.
-
 use super::write;
-use mipless::{Footprint, Method, Options, Texture};
+use mipless::{Footprint, Options, Texture};
 use mipless_tests::asked;
 use mipless_tests::case::load;
-use mipless_tests::random::Random;
+use mipless_tests::measured::{Effort, Measured, band, far_bias, relative};
 use mipless_tests::random_graph::of_seed;
 use mipless_tests::reduce::reduced;
-use mipless_tests::shown::{evaluate, mean, rms, shown, truths, variance, wavelength};
+use mipless_tests::shown::wavelength;
 use mipless_tests::tolerance::SOURCE;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::f64::consts::SQRT_2;
 use std::panic::{catch_unwind, set_hook};
 
-/// Pixels, in wavelengths.
-const BAND: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
-/// The pixels of the frame far away, in wavelengths.
-const FAR: f64 = 64.0;
-/// Pixels of each size.
-const PIXELS: usize = 32;
-/// Samples of each of the two truths.
-const SAMPLES: u32 = 1024;
+/// How much of each graph is looked at, where it is reduced, and of a single node.
+const EFFORT: Effort = Effort {
+    pixels: 32,
+    samples: 1024,
+};
+const REDUCING: Effort = Effort {
+    samples: 64,
+    ..EFFORT
+};
+const OF_NODE: Effort = Effort {
+    samples: 128,
+    ..EFFORT
+};
 /// Graphs that are listed, the worst first.
 const LISTED: usize = 20;
 
-/// Graphs that are reduced, by so many questions each, with so many samples.
+/// Graphs that are reduced, by so many questions each.
 const REDUCED: usize = 12;
 const QUESTIONS: usize = 400;
-const FEWER: u32 = 64;
 
 /// A name, and what it means of a graph.
 type Column<'a> = (&'a str, &'a dyn Fn(&Row) -> f64);
@@ -44,19 +42,27 @@ struct Row {
     seed: u64,
     nodes: usize,
     wavelength: f64,
-    auto: f64,
-    point: f64,
-    floor: f64,
-    /// |mean of `auto` − mean of the truth| over the far frame, the largest of the components.
+    errors: Measured,
     bias: f64,
     /// What the audit predicts of `auto`, over all components together.
     predicted: f64,
 }
 
 impl Row {
-    /// By how much `auto` is worse than `point`, beyond what the truth knows.
+    fn of(texture: &Texture, seed: u64, nodes: usize) -> Option<Self> {
+        let wavelength = wavelength(texture)?;
+        Some(Self {
+            seed,
+            nodes,
+            wavelength,
+            errors: Measured::of(texture, wavelength, EFFORT),
+            bias: far_bias(texture, wavelength, EFFORT),
+            predicted: predicted(texture),
+        })
+    }
+
     fn excess(&self) -> f64 {
-        self.auto - self.point - self.floor
+        self.errors.excess()
     }
 }
 
@@ -79,7 +85,7 @@ pub(super) fn measure(count: u64, first: u64) {
             let run = || {
                 let (graph, texture) = of_seed(seed);
                 let nodes = graph["nodes"].as_object().map_or(0, serde_json::Map::len);
-                row(&texture, SAMPLES, seed, nodes).map_or(Outcome::Flat, Outcome::Measured)
+                Row::of(&texture, seed, nodes).map_or(Outcome::Flat, Outcome::Measured)
             };
             catch_unwind(run).unwrap_or(Outcome::Panicked(seed))
         })
@@ -111,7 +117,7 @@ pub(super) fn measure(count: u64, first: u64) {
         line(row, suspect);
     }
     let orders: [(&str, Measure); 2] = [
-        ("the largest errors", |row| row.auto),
+        ("the largest errors", |row| row.errors.auto),
         ("the largest biases far away", |row| row.bias),
     ];
     for (title, of) in orders {
@@ -149,14 +155,20 @@ fn header(title: &str) {
 fn line(row: &Row, suspect: &str) {
     println!(
         "| {} | {} | {:.2e} | {:.4} | {:.4} | {:.4} | {:.4} | {suspect} |",
-        row.seed, row.nodes, row.wavelength, row.auto, row.point, row.floor, row.bias
+        row.seed,
+        row.nodes,
+        row.wavelength,
+        row.errors.auto,
+        row.errors.point,
+        row.errors.floor,
+        row.bias
     );
 }
 
 fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
     let worse = rows.iter().filter(|row| row.excess() > 0.0).count();
     let clearly = rows.iter().filter(|row| row.excess() > 0.005).count();
-    let bad = rows.iter().filter(|row| row.auto > 0.05).count();
+    let bad = rows.iter().filter(|row| row.errors.auto > 0.05).count();
     let quantile = |of: &dyn Fn(&Row) -> f64, share: f64| {
         let mut values: Vec<f64> = rows.iter().map(of).collect();
         values.sort_by(f64::total_cmp);
@@ -167,48 +179,26 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
     println!("panics: {} {panicked:?}", panicked.len());
     println!("`auto` worse than `point` by more than the floor: {worse}; by 0.005 more: {clearly}");
     println!("`auto` above 0.05: {bad}");
-    let covered = rows.iter().filter(|row| row.auto <= row.predicted).count();
-    let ratio = quantile(&|row| row.predicted / row.auto.max(1e-3), 0.5);
+    let covered = rows
+        .iter()
+        .filter(|row| row.errors.auto <= row.predicted)
+        .count();
+    let ratio = quantile(&|row| row.predicted / row.errors.auto.max(1e-3), 0.5);
     println!(
         "the prediction covers the error in {covered} of {}; its median is {ratio:.1} times the error",
         rows.len()
     );
     println!("\n| | median | 95 % | worst |\n|---|---|---|---|");
     let columns: [Column<'_>; 4] = [
-        ("auto", &|row| row.auto),
-        ("point", &|row| row.point),
-        ("floor", &|row| row.floor),
+        ("auto", &|row| row.errors.auto),
+        ("point", &|row| row.errors.point),
+        ("floor", &|row| row.errors.floor),
         ("bias of the far mean", &|row| row.bias),
     ];
     for (name, of) in columns {
         let [median, most, worst] = [0.5, 0.95, 1.0].map(|share| quantile(of, share));
         println!("| {name} | {median:.4} | {most:.4} | {worst:.4} |");
     }
-}
-
-/// Pixels of some sizes at random places, a third of them eight times as long as wide and askew.
-fn pixels(sizes: &[f64], wavelength: f64) -> Vec<Footprint> {
-    let mut random = Random::new(4);
-    let mut all = Vec::new();
-    for size in sizes {
-        let size = (size * wavelength) as f32;
-        for pixel in 0..PIXELS {
-            let reach = 20.0 * wavelength.max(0.4);
-            let [x, y] = [0, 1].map(|_| random.within(-reach, reach));
-            let (du, dv) = if pixel % 3 == 2 {
-                let narrow = size / 8.0;
-                ([0.8 * size, 0.6 * size], [-0.6 * narrow, 0.8 * narrow])
-            } else {
-                ([size, 0.0], [0.0, size])
-            };
-            all.push(Footprint {
-                du,
-                dv,
-                ..Footprint::point([x, y])
-            });
-        }
-    }
-    all
 }
 
 /// The root mean square over components of the errors that the audit predicts; where every rule is
@@ -226,37 +216,16 @@ fn predicted(texture: &Texture) -> f64 {
     f64::sqrt(squares / f64::max(count, 1.0))
 }
 
-fn row(texture: &Texture, samples: u32, seed: u64, nodes: usize) -> Option<Row> {
-    let wavelength = wavelength(texture)?;
-    let band = pixels(&BAND, wavelength);
-    let truths_shown = truths(texture, samples, &band).map(shown);
-    let truth = mean(&truths_shown);
-    let error = |method| rms(&shown(evaluate(texture, method, 0, &band)), &truth);
-
-    let frame = pixels(&[FAR, FAR], wavelength);
-    let far_truth = mean(&truths(texture, samples, &frame).map(shown));
-    let far = shown(evaluate(texture, Method::Auto, 0, &frame));
-    let average = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
-    let biases = (far.iter().zip(&far_truth)).map(|(a, b)| (average(a) - average(b)).abs());
-    Some(Row {
-        seed,
-        nodes,
-        wavelength,
-        auto: error(Method::Auto),
-        point: error(Method::Point),
-        floor: rms(&truths_shown[0], &truths_shown[1]) / SQRT_2,
-        bias: biases.fold(0.0, f64::max),
-        predicted: predicted(texture),
-    })
-}
-
 /// Writes the smallest graph that is as much worse by `auto` than by `point`, by a half.
 fn reduce(worse: &Row) {
     let (graph, _) = of_seed(worse.seed);
     let small = reduced(graph, QUESTIONS, |_, texture| {
-        let run = || row(texture, FEWER, worse.seed, 0);
+        let run = || {
+            let wavelength = wavelength(texture)?;
+            Some(Measured::of(texture, wavelength, REDUCING))
+        };
         let found = catch_unwind(run).ok().flatten();
-        found.is_some_and(|row| row.excess() > 0.5 * worse.excess())
+        found.is_some_and(|errors| errors.excess() > 0.5 * worse.excess())
     });
     let text = serde_json::to_string_pretty(&small).expect("JSON");
     write(&format!("worse_{}", worse.seed), &text);
@@ -267,7 +236,7 @@ fn suspect(row: &Row) -> String {
     let (graph, _) = of_seed(row.seed);
     let nodes = graph["nodes"].as_object().expect("nodes");
     let mut errors: BTreeMap<String, f64> = BTreeMap::new();
-    let band = pixels(&BAND, row.wavelength);
+    let band = band(row.wavelength, OF_NODE);
     for name in nodes.keys() {
         let error = of_node(&graph, name, &band).unwrap_or(0.0);
         errors.insert(name.clone(), error);
@@ -324,13 +293,5 @@ fn of_node(graph: &Value, name: &str, band: &[Footprint]) -> Option<f64> {
     };
     alone["outputs"] = json!({ "out": { "node": name, "output": output } });
     let texture = load(&alone.to_string()).ok()?;
-    let exact = |values: Vec<Vec<f32>>| -> Vec<Vec<f64>> {
-        let of = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
-        values.into_iter().map(of).collect()
-    };
-    let spread = variance(&exact(evaluate(&texture, Method::Point, 0, band))).sqrt();
-    let truth = mean(&truths(&texture, 128, band).map(exact));
-    let found = exact(evaluate(&texture, Method::Auto, 0, band));
-    let error = rms(&found, &truth) / spread.max(1e-6);
-    error.is_finite().then_some(error)
+    relative(&texture, band, OF_NODE)
 }
