@@ -25,8 +25,8 @@ pub(crate) mod worley;
 
 room! {
     byexample,
-    cellnoise2d,
-    cellnoise3d,
+    cellnoise2d with things,
+    cellnoise3d with things,
     fractal2d,
     fractal3d,
     gabornoise2d,

@@ -21,6 +21,7 @@ mod truth;
 mod verdict;
 
 use super::bands::Bands;
+use super::mixture::Mixtures;
 use super::sampled::Sampling;
 use super::shape::{Shape, shape};
 use super::torus::Repeated;
@@ -109,6 +110,7 @@ pub struct AuditedBand {
 /// What is decided for a graph.
 #[derive(Debug, Default)]
 struct Decision {
+    mixtures: Mixtures,
     sampled: FxHashMap<usize, Sampling>,
     repeated: FxHashMap<usize, Repeated>,
     audit: Audit,
@@ -139,6 +141,7 @@ pub(super) fn audited(
         known.get(shape).cloned()
     });
     if let Some(known) = known {
+        facts.mixtures = known.mixtures.clone();
         facts.sampled = known.sampled.clone();
         facts.repeated = known.repeated.clone();
         return (
@@ -225,6 +228,7 @@ fn decide(
             ..Audit::default()
         };
         let decision = Decision {
+            mixtures: facts.mixtures.clone(),
             audit,
             ..Decision::default()
         };
@@ -250,6 +254,16 @@ fn decide(
         repeated: FxHashMap::default(),
     };
 
+    if !facts.mixtures.is_empty() {
+        // What is closed without them is worth as much, where it is as good.
+        let mixtures = std::mem::take(&mut facts.mixtures);
+        let plain = candidate(facts);
+        if verdict(&plain.errors).beats(verdict(&best.errors)) {
+            best = plain;
+        } else {
+            facts.mixtures = mixtures;
+        }
+    }
     let readers = readers(graph);
     if !verdict(&best.errors).is_good() {
         facts.repeated = repeated(bands, checked, catalogue, options, facts);
@@ -299,6 +313,7 @@ fn decide(
         is_too_large: false,
     };
     let decision = Decision {
+        mixtures: facts.mixtures.clone(),
         sampled: best.sampled,
         repeated: best.repeated,
         audit,
