@@ -41,7 +41,7 @@ const GRAPHS: [(&str, [f64; 2], &str); 14] = [
     ),
     (
         "random colours of regions",
-        [0.015, 0.08],
+        [0.005, 0.035],
         r#""o":{"type":"randomcolor","inputs":{"in":{"node":"id"}}}"#,
     ),
     (
@@ -71,7 +71,7 @@ const GRAPHS: [(&str, [f64; 2], &str); 14] = [
     ),
     (
         "random colours of bricks",
-        [0.02, 0.08],
+        [0.002, 0.01],
         r#""b":{"type":"brick","inputs":{"output":"random"}},"o":{"type":"randomcolor","inputs":{"in":{"node":"b"}}}"#,
     ),
     (

@@ -14,12 +14,13 @@ pub(crate) mod space;
 
 use super::field::Spread;
 use super::period::wrapped;
-use line::Sums;
-use mipless_codegen::ir::{
-    Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Sym2, Uint, Vec2,
+use super::things::{
+    Filtered, Sums, attach, channels, declared_ensemble, ensemble, named, weighted,
 };
+use line::Sums as LineSums;
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Scalar, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Normal, Signal};
-use mipless_codegen::{Ensemble, Image, Lower, pairs};
+use mipless_codegen::{Image, Lower, pairs};
 use passed::{Passed, passed};
 
 /// The variance of a number of [0, 1).
@@ -101,11 +102,8 @@ pub(crate) fn filtered<'b>(
     let (image, parameters) = lower.image();
     let key = format!("cells {mode:?} {seed} {period} {}", image.key());
     let function = lower.function(&key, |module| build(module, mode, seed, period, &image));
-    let ensemble = ensemble(
-        lower,
-        &image,
-        spread.covariance[0].max(spread.covariance[2]),
-    );
+    let widest = spread.covariance[0].max(spread.covariance[2]);
+    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0]).lt(1.0));
     let others = (parameters, ensemble);
     let results = place::called(lower, &function, (position, &spread), others);
     let (fields, rest) = results.split_at(results.len().min(3 * image.channels()));
@@ -114,39 +112,6 @@ pub(crate) fn filtered<'b>(
         .collect();
     attach(lower, &image, &mut signals, rest);
     signals
-}
-
-/// What an image is over all cells, as captures of the functions that sum it: of the number itself it
-/// is known there. Wanted where a footprint of this variance fades.
-fn ensemble<'b>(
-    lower: &mut Lower<'_, 'b>,
-    image: &Image,
-    widest: Float<'b>,
-) -> Option<Ensemble<'b>> {
-    let is_wanted = !image.is_identity() && lower.mode().filters();
-    is_wanted.then(|| {
-        let [sd, _] = deviation(widest);
-        lower.ensemble(image, fading(sd).lt(1.0))
-    })
-}
-
-/// The covariance that signals have beyond what they carry.
-fn attach<'b>(
-    lower: &mut Lower<'_, 'b>,
-    image: &Image,
-    signals: &mut [Signal<'b>],
-    rest: &[Float<'b>],
-) {
-    if let [number] = signals
-        && image.is_identity()
-    {
-        number.range = [0.0, 1.0];
-    }
-    match signals {
-        _ if rest.is_empty() => {}
-        [signal] => lower.algebra.attach_fresh(signal, rest[0]),
-        signals => lower.algebra.attach_joint(signals, rest),
-    }
 }
 
 /// The window of a standard deviation: where it starts, and how many cells it has.
@@ -189,21 +154,11 @@ passed! {
     }
 }
 
-/// Parameters of these names, or of the one name where there is one.
-fn channels<'b>(b: &'b Builder, name: &str, count: usize) -> Vec<Float<'b>> {
-    (0..count)
-        .map(|i| match count {
-            1 => b.float_param(name),
-            _ => b.float_param(format!("{name}_{i}")),
-        })
-        .collect()
-}
-
 /// The cells of one row, the body of a fold over columns.
 fn column(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
     let b = &Builder::new("cell_column", "One cell of a row.");
     let index = b.uint_param("index");
-    let sums = Sums::declare(b, image.channels());
+    let sums = LineSums::declare(b, image.channels());
     let row = Row::declare(b);
     let centre = channels(b, "centre", image.channels());
     let cells = RowCells::declare(b);
@@ -288,95 +243,13 @@ passed! {
     }
 }
 
-/// Sums over the rows of a plane: of the weight, of d, of its products, and of both slopes of d.
-#[derive(Clone, Debug)]
-struct RowSums<'b> {
-    weight: Float<'b>,
-    first: Vec<Float<'b>>,
-    second: Vec<Float<'b>>,
-    slope_x: Vec<Float<'b>>,
-    slope_y: Vec<Float<'b>>,
-}
-
-impl<'b> RowSums<'b> {
-    fn zero(b: &'b Builder, channels: usize) -> Self {
-        let zero = b.float(0.0);
-        Self {
-            weight: zero,
-            first: vec![zero; channels],
-            second: vec![zero; pairs(channels).count()],
-            slope_x: vec![zero; channels],
-            slope_y: vec![zero; channels],
-        }
-    }
-
-    fn names(count: usize) -> Vec<String> {
-        let lists = [
-            ("weight", 1),
-            ("first", count),
-            ("second", pairs(count).count()),
-            ("slope_x", count),
-            ("slope_y", count),
-        ];
-        named(&lists)
-    }
-
-    fn declare(b: &'b Builder, channels: usize) -> Self {
-        let mut names = Self::names(channels).into_iter();
-        let mut next = || names.next().expect("a name for each part");
-        Self::zero(b, channels).replaced(&mut || b.float_param(next()).into())
-    }
-
-    fn results(&self, b: &'b Builder) {
-        b.results(Self::names(self.first.len()), self.scalars());
-    }
-}
-
-/// The names of lists of numbers: of one number the name, of several with their places.
-fn named(lists: &[(&str, usize)]) -> Vec<String> {
-    let of = |&(name, count): &(&str, usize)| {
-        let name = name.to_owned();
-        (0..count).map(move |i| match count {
-            1 => name.clone(),
-            _ => format!("{name}_{i}"),
-        })
-    };
-    lists.iter().flat_map(of).collect()
-}
-
-impl<'b> Scalars<'b> for RowSums<'b> {
-    fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
-        self.weight.each(visit);
-        [&self.first, &self.second, &self.slope_x, &self.slope_y].each(visit);
-    }
-
-    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
-        let weight = self.weight.replaced(next);
-        let lists = [self.first, self.second, self.slope_x, self.slope_y];
-        let [first, second, slope_x, slope_y] = lists.replaced(next);
-        Self {
-            weight,
-            first,
-            second,
-            slope_x,
-            slope_y,
-        }
-    }
-}
-
-/// Each sum with its part, times a weight.
-fn weighted<'b>(sums: Vec<Float<'b>>, weight: Float<'b>, parts: &[Float<'b>]) -> Vec<Float<'b>> {
-    let parts = sums.into_iter().zip(parts);
-    parts.map(|(sum, &part)| sum + weight * part).collect()
-}
-
 /// One row of cells, the body of a fold.
 fn row(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
     let column = column(module, period, image);
     let b = &Builder::new("cell_row", "One row of cells.");
     let index = b.uint_param("index");
     let count = image.channels();
-    let sums = RowSums::declare(b, count);
+    let sums = Sums::declare(b, count);
     let rows = Rows::declare(b);
     let centre = channels(b, "centre", count);
     let cells = RowsCells::declare(b);
@@ -403,13 +276,13 @@ fn row(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
         row: cells.cell_y + place.to_int(),
         seed: cells.seed,
     };
-    let before = Sums::start([start - mean, inverse_sd], count);
+    let before = LineSums::start([start - mean, inverse_sd], count);
     let captures = (line, &centre, of_row, &parameters);
     let of_row = b.fold(&column, columns.to_int().to_uint(), before, captures);
     let [first, second, slope] = of_row.averages();
     let slope: Vec<Float<'_>> = slope.iter().map(|&slope| slope * inverse_sd).collect();
     let weight = slice.weight;
-    RowSums {
+    Sums {
         weight: sums.weight + weight,
         first: weighted(sums.first, weight, &first),
         second: weighted(sums.second, weight, &second),
@@ -468,7 +341,7 @@ impl<'b> Plane<'b> {
             // det Σ/Σ₂₂, of what is raised.
             variance_across: ((determinant + s_xx * NARROWEST) / raised).min(s_xx),
         };
-        let before = RowSums::zero(b, cells.centre.len());
+        let before = Sums::zero(b, cells.centre.len());
         let captures = (rows, &cells.centre, of_rows, &cells.parameters);
         let sums = b.fold(row, counted(count, cells.fade), before, captures);
         let scale = 1.0 / sums.weight.max(1e-6);
@@ -480,84 +353,6 @@ impl<'b> Plane<'b> {
             slopes: slopes.map(|(x, y)| Vec2([x, y]) * scale).collect(),
         }
     }
-}
-
-/// What the cells of a footprint have in common, by what they are less the centre.
-struct Filtered<'b> {
-    /// What is at the centre.
-    centre: Vec<Float<'b>>,
-    /// The means of d and of its products.
-    first: Vec<Float<'b>>,
-    second: Vec<Float<'b>>,
-    /// The derivatives of each mean.
-    slopes: Vec<Vec<Float<'b>>>,
-    /// The covariance that they give.
-    linear: Vec<Float<'b>>,
-    /// How much of it has not faded.
-    fade: Float<'b>,
-    /// The probability that two places of the footprint lie in one cell.
-    same: Float<'b>,
-}
-
-impl<'b> Filtered<'b> {
-    /// The results of a function: for each component of the image the mean and the slopes, then what is
-    /// left of the covariance.
-    fn results(&self, b: &'b Builder, mode: Mode, ensemble: Option<&Ensemble<'b>>) {
-        let Self { first, fade, .. } = self;
-        let fade = *fade;
-        let count = first.len();
-        let carries = matches!(mode, Mode::Local | Mode::Quad);
-        for i in 0..count {
-            let suffix = if count > 1 {
-                format!("_{i}")
-            } else {
-                String::new()
-            };
-            // M = μ + fade (v₀ + m₁ − μ).
-            let mean = match ensemble {
-                None => ((self.centre[i] + first[i] + -0.5) * fade + 0.5).clamp(0.0, 1.0),
-                Some(ensemble) => {
-                    let far = ensemble.means[i];
-                    (self.centre[i] + first[i] - far) * fade + far
-                }
-            };
-            b.result(format!("mean{suffix}"), mean);
-            for (name, &slope) in ["dx", "dy", "dz"].into_iter().zip(&self.slopes[i]) {
-                let slope = if carries { slope * fade } else { b.float(0.0) };
-                b.result(format!("{name}{suffix}"), slope);
-            }
-        }
-        if !mode.spreads() {
-            return;
-        }
-        for (at, (i, k)) in pairs(count).enumerate() {
-            let far = |by: Float<'b>| match ensemble {
-                None => by * VARIANCE,
-                Some(ensemble) => by * ensemble.covariance[at],
-            };
-            let rest = if carries {
-                let own = self.second[at] - first[i] * first[k];
-                let near = own - self.linear[at] * fade.square();
-                let near = if i == k { near.max(0.0) } else { near };
-                near * fade + far(1.0 - fade)
-            } else {
-                far(1.0 - self.same * fade)
-            };
-            match count {
-                1 => b.result("rest", rest),
-                _ => b.result(format!("rest_{i}_{k}"), rest),
-            }
-        }
-    }
-}
-
-/// The parameters of what an image is over all cells, of a function that is asked for it.
-fn declared_ensemble<'b>(b: &'b Builder, image: &Image) -> Option<Ensemble<'b>> {
-    let count = image.channels();
-    (!image.is_identity()).then(|| Ensemble {
-        means: channels(b, "far_mean", count),
-        covariance: channels(b, "far_covariance", pairs(count).count()),
-    })
 }
 
 fn build(module: &mut Module, mode: Mode, seed: i32, period: i32, image: &Image) -> FunctionRef {

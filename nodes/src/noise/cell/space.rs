@@ -6,11 +6,13 @@
 use super::passed::{Passed, passed};
 use super::place::declared;
 use super::{
-    Cells, Filtered, NARROWEST, Plane, RowSums, Slice, attach, channels, coincidence, counted,
-    declared_ensemble, deviation, ensemble, fading, inside, lattice_seed, named, number, report,
-    row, weighted, window,
+    Cells, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside, lattice_seed,
+    number, report, row, window,
 };
 use crate::noise::period::wrapped;
+use crate::noise::things::{
+    Filtered, Sums, attach, channels, declared_ensemble, ensemble, named, weighted,
+};
 use crate::noise::volume::{Spread, at};
 use mipless_codegen::ir::{
     Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Sym2, Uint, Vec2, dot,
@@ -43,7 +45,8 @@ pub(crate) fn filtered<'b>(
     let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(Signal::place).collect();
     let captures = mode.filters().then_some(spread);
     let [xx, _, _, yy, _, zz] = *spread.covariance;
-    let ensemble = ensemble(lower, &image, xx.max(yy).max(zz));
+    let widest = xx.max(yy).max(zz);
+    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0]).lt(1.0));
     let sums = b.call(&function, (places, parameters, ensemble, captures));
     let (fields, rest) = sums.split_at(sums.len().min(4 * image.channels()));
     let mut signals: Vec<Signal<'b>> = (fields.chunks(4))
@@ -100,7 +103,7 @@ passed! {
 /// Sums over the layers: as over rows, and of the slope along z.
 #[derive(Clone, Debug)]
 struct LayerSums<'b> {
-    rows: RowSums<'b>,
+    rows: Sums<'b>,
     slope_z: Vec<Float<'b>>,
 }
 
@@ -125,7 +128,7 @@ fn layer(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
     let index = b.uint_param("index");
     let count = image.channels();
     let sums = LayerSums {
-        rows: RowSums::declare(b, count),
+        rows: Sums::declare(b, count),
         slope_z: channels(b, "slope_z", count),
     };
     let layers = Layers::declare(b);
@@ -170,7 +173,7 @@ fn layer(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
         },
     );
     let slope_z: Vec<Float<'_>> = slope_z.collect();
-    let rows = RowSums {
+    let rows = Sums {
         weight: sums.rows.weight + weight,
         first: weighted(sums.rows.first, weight, &plane.first),
         second: weighted(sums.rows.second, weight, &plane.second),
@@ -234,7 +237,7 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32, image: &Image)
     };
     let zero = b.float(0.0);
     let before = LayerSums {
-        rows: RowSums::zero(b, image.channels()),
+        rows: Sums::zero(b, image.channels()),
         slope_z: vec![zero; image.channels()],
     };
     let captures = (layers, &centre, of_layers, &parameters);
