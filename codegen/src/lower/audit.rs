@@ -87,10 +87,11 @@ pub struct AuditedOutput {
 
 impl AuditedOutput {
     /// The largest error of `auto` that is to be expected, as a display shows it: a third more than
-    /// was measured at a few places, and the noise of what was held to be true.
+    /// was measured at a few places beyond the noise of what was held to be true, and a little.
     pub fn predicted(&self) -> f64 {
-        let largest = self.bands.iter().map(|band| band.auto).fold(0.0, f64::max);
-        1.33 * largest + 0.005
+        let beyond_noise = |band: &AuditedBand| (band.auto.powi(2) - band.floor.powi(2)).max(0.0);
+        let largest = self.bands.iter().map(beyond_noise).fold(0.0, f64::max);
+        1.33 * largest.sqrt() + 0.003
     }
 }
 
@@ -105,6 +106,8 @@ pub struct AuditedBand {
     pub closed: f64,
     /// Of what `auto` does.
     pub auto: f64,
+    /// Of what is held to be true.
+    pub floor: f64,
 }
 
 /// What is decided for a graph.
@@ -221,10 +224,10 @@ fn decide(
     let closed = program(graph, catalogue, options, facts);
     let found = values(&closed, footprints);
     let errors = glance.errors(&found);
-    let point = glance.errors(&glance.point);
-    if Verdict::of(&errors, &point, &glance.floor()).is_good() {
+    let (point, floor) = (glance.errors(&glance.point), glance.floor());
+    if Verdict::of(&errors, &point, &floor).is_good() {
         let audit = Audit {
-            outputs: audited_outputs(bands, &point, &errors, &errors),
+            outputs: audited_outputs(bands, [&point, &errors, &errors, &floor]),
             ..Audit::default()
         };
         let decision = Decision {
@@ -308,7 +311,7 @@ fn decide(
         .collect();
     replaced.sort_by_key(|replaced| (replaced.node, replaced.remedy == Remedy::Sampled));
     let audit = Audit {
-        outputs: audited_outputs(bands, &point, &closed_errors, &best.errors),
+        outputs: audited_outputs(bands, [&point, &closed_errors, &best.errors, &floor]),
         replaced,
         is_too_large: false,
     };
@@ -322,17 +325,13 @@ fn decide(
 }
 
 /// The errors of each output.
-fn audited_outputs(
-    bands: Bands,
-    point: &Errors,
-    closed: &Errors,
-    auto: &Errors,
-) -> Vec<AuditedOutput> {
+fn audited_outputs(bands: Bands, [point, closed, auto, floor]: [&Errors; 4]) -> Vec<AuditedOutput> {
     let band = |output: usize, band: usize| AuditedBand {
         size: bands.size(band),
         point: point[output][band],
         closed: closed[output][band],
         auto: auto[output][band],
+        floor: floor[output][band],
     };
     (0..point.len())
         .map(|output| AuditedOutput {

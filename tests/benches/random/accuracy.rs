@@ -6,16 +6,17 @@
 
 use super::write;
 use mipless::{Footprint, Method, Options, Texture};
-use mipless_runtime::srgb::srgb_from_linear;
 use mipless_tests::asked;
 use mipless_tests::case::load;
 use mipless_tests::random::Random;
 use mipless_tests::random_graph::of_seed;
 use mipless_tests::reduce::reduced;
+use mipless_tests::shown::{evaluate, mean, rms, shown, truths, variance, wavelength};
+use mipless_tests::tolerance::SOURCE;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::SQRT_2;
 use std::panic::{catch_unwind, set_hook};
 
 /// Pixels, in wavelengths.
@@ -26,8 +27,6 @@ const FAR: f64 = 64.0;
 const PIXELS: usize = 32;
 /// Samples of each of the two truths.
 const SAMPLES: u32 = 1024;
-/// A graph whose values spread less over its places shows nothing.
-const VISIBLE: f64 = 0.01;
 /// Graphs that are listed, the worst first.
 const LISTED: usize = 20;
 
@@ -50,6 +49,8 @@ struct Row {
     floor: f64,
     /// |mean of `auto` − mean of the truth| over the far frame, the largest of the components.
     bias: f64,
+    /// What the audit predicts of `auto`, over all components together.
+    predicted: f64,
 }
 
 impl Row {
@@ -166,6 +167,12 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
     println!("panics: {} {panicked:?}", panicked.len());
     println!("`auto` worse than `point` by more than the floor: {worse}; by 0.005 more: {clearly}");
     println!("`auto` above 0.05: {bad}");
+    let covered = rows.iter().filter(|row| row.auto <= row.predicted).count();
+    let ratio = quantile(&|row| row.predicted / row.auto.max(1e-3), 0.5);
+    println!(
+        "the prediction covers the error in {covered} of {}; its median is {ratio:.1} times the error",
+        rows.len()
+    );
     println!("\n| | median | 95 % | worst |\n|---|---|---|---|");
     let columns: [Column<'_>; 4] = [
         ("auto", &|row| row.auto),
@@ -177,71 +184,6 @@ fn summary(count: u64, panicked: &[u64], rows: &[Row]) {
         let [median, most, worst] = [0.5, 0.95, 1.0].map(|share| quantile(of, share));
         println!("| {name} | {median:.4} | {most:.4} | {worst:.4} |");
     }
-}
-
-fn shown(values: Vec<Vec<f32>>) -> Vec<Vec<f64>> {
-    let of = |values: Vec<f32>| {
-        let show = |x: f32| f64::from(srgb_from_linear(x));
-        values.into_iter().map(show).collect()
-    };
-    values.into_iter().map(of).collect()
-}
-
-fn evaluate(texture: &Texture, method: Method, seed: u32, at: &[Footprint]) -> Vec<Vec<f32>> {
-    let options = Options {
-        method,
-        seed,
-        ..Options::default()
-    };
-    texture.evaluator(&options).evaluate(at)
-}
-
-/// Mean and variance over all components together, each about its own mean.
-fn variance(values: &[Vec<f64>]) -> f64 {
-    let of = |values: &Vec<f64>| {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n
-    };
-    values.iter().map(of).sum::<f64>() / values.len() as f64
-}
-
-fn rms(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    let pairs = a.iter().flatten().zip(b.iter().flatten());
-    let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (a, b)| {
-        (sum + (a - b).powi(2), count + 1.0)
-    });
-    (sum / f64::max(count, 1.0)).sqrt()
-}
-
-/// The wavelength of what a graph shows: six times the least distance at which its values are
-/// correlated by a half, as a cosine's are at a sixth of its wavelength. `None` if it shows nothing.
-fn wavelength(texture: &Texture) -> Option<f64> {
-    let mut random = Random::new(3);
-    let places: Vec<([f64; 2], f64)> = (0..384)
-        .map(|_| {
-            let place = [0, 1].map(|_| random.within(-8.0, 8.0));
-            (place, TAU * random.unit())
-        })
-        .collect();
-    let values = |distance: f64| {
-        let moved: Vec<Footprint> = (places.iter())
-            .map(|([x, y], angle)| {
-                Footprint::point([x + distance * angle.cos(), y + distance * angle.sin()])
-            })
-            .collect();
-        shown(evaluate(texture, Method::Point, 0, &moved))
-    };
-    let start = values(0.0);
-    let spread = variance(&start);
-    if spread.sqrt() < VISIBLE {
-        return None;
-    }
-    let distances = (-28..=6).map(|k| 2.0_f64.powf(0.5 * f64::from(k)));
-    let half = distances
-        .map(|distance| (distance, rms(&start, &values(distance)).powi(2)))
-        .find(|&(_, difference)| difference >= spread);
-    Some(half.map_or(8.0, |(distance, _)| 6.0 * distance))
 }
 
 /// Pixels of some sizes at random places, a third of them eight times as long as wide and askew.
@@ -269,14 +211,19 @@ fn pixels(sizes: &[f64], wavelength: f64) -> Vec<Footprint> {
     all
 }
 
-/// Two independent truths.
-fn truths(texture: &Texture, samples: u32, pixels: &[Footprint]) -> [Vec<Vec<f32>>; 2] {
-    [1, 2].map(|seed| evaluate(texture, Method::Supersample(samples), seed, pixels))
-}
-
-fn mean([a, b]: &[Vec<Vec<f64>>; 2]) -> Vec<Vec<f64>> {
-    let of = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| 0.5 * (a + b)).collect();
-    a.iter().zip(b).map(of).collect()
+/// The root mean square over components of the errors that the audit predicts; where every rule is
+/// exact, what filtering the sources themselves is off by.
+fn predicted(texture: &Texture) -> f64 {
+    let audit = texture.audit(&Options::default());
+    let (mut squares, mut count) = (0.0, 0.0);
+    for (index, output) in texture.outputs().iter().enumerate() {
+        let audited = audit.outputs.iter().find(|audited| audited.output == index);
+        let error = audited.map_or(SOURCE, |audited| audited.predicted());
+        let components = output.ty.components() as f64;
+        squares += components * error * error;
+        count += components;
+    }
+    f64::sqrt(squares / f64::max(count, 1.0))
 }
 
 fn row(texture: &Texture, samples: u32, seed: u64, nodes: usize) -> Option<Row> {
@@ -299,6 +246,7 @@ fn row(texture: &Texture, samples: u32, seed: u64, nodes: usize) -> Option<Row> 
         point: error(Method::Point),
         floor: rms(&truths_shown[0], &truths_shown[1]) / SQRT_2,
         bias: biases.fold(0.0, f64::max),
+        predicted: predicted(texture),
     })
 }
 
