@@ -24,6 +24,7 @@ mod verdict;
 
 use super::bands::Bands;
 use super::drawn::Drawn;
+use super::mixture::Mixtures;
 use super::sampled::Sampling;
 use super::shape::{Shape, shape};
 use super::torus::Repeated;
@@ -118,6 +119,7 @@ pub struct AuditedBand {
 /// What is decided for a graph.
 #[derive(Debug, Default)]
 struct Decision {
+    mixtures: Mixtures,
     sampled: FxHashMap<usize, Sampling>,
     repeated: FxHashMap<usize, Repeated>,
     drawn: FxHashMap<usize, Drawn>,
@@ -149,6 +151,7 @@ pub(super) fn audited(
         known.get(shape).cloned()
     });
     if let Some(known) = known {
+        facts.mixtures = known.mixtures.clone();
         facts.sampled = known.sampled.clone();
         facts.repeated = known.repeated.clone();
         facts.drawn = known.drawn.clone();
@@ -242,6 +245,7 @@ fn decide(
             ..Audit::default()
         };
         let decision = Decision {
+            mixtures: facts.mixtures.clone(),
             audit,
             ..Decision::default()
         };
@@ -270,6 +274,16 @@ fn decide(
         repeated: FxHashMap::default(),
     };
 
+    if !facts.mixtures.is_empty() {
+        // What is closed without them is worth as much, where it is as good.
+        let mixtures = std::mem::take(&mut facts.mixtures);
+        let plain = candidate(facts);
+        if verdict(&plain.errors).beats(verdict(&best.errors)) {
+            best = plain;
+        } else {
+            facts.mixtures = mixtures;
+        }
+    }
     let readers = readers(graph);
     if !verdict(&best.errors).is_good() {
         facts.repeated = repeated(bands, checked, catalogue, options, facts);
@@ -361,6 +375,7 @@ fn decide(
         is_too_large: false,
     };
     let decision = Decision {
+        mixtures: facts.mixtures.clone(),
         sampled: best.sampled,
         repeated: best.repeated,
         drawn: facts.drawn.clone(),
