@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// The arguments of `import`.
 #[derive(Args, Debug)]
 pub(crate) struct Arguments {
-    /// A document: .mtlx (MaterialX)
+    /// A document: .mtlx (MaterialX), .ptex (Material Maker) or .gltf (KHR_texture_procedurals)
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// The graph to write [default: standard output]

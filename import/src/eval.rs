@@ -10,7 +10,11 @@
 //! | `has("node.port", a, b)` | `a` where the catalogue has it, else `b` |
 //! | `given("port", a, b)` | `a` where the document says what the input holds, else `b` |
 //! | `fold(node, e)` | the node over all parts of `e` |
-//! | `rgba(c, a)` | a colour with another alpha |
+//! | `rgba(c, a)`, `rgb(r, g, b)` | a colour with another alpha; a colour of three numbers |
+//! | `alpha("port", e)` | the alpha of an input, at the coordinate `e` if there is one |
+//! | `sum(n, e)` | `e` for each `#` from 0 to n − 1, summed |
+//! | `sin(e)`, `cos(e)`, `pow(a, b)` | worked out where they are literals |
+//! | `seed(e)`, `period(x, y, #)` | the node's own random numbers; after how many cells they repeat |
 //! | `input("name", e)` | an input of the graph, a number |
 //! | `index()` | which output of the node is asked for, from its last letter |
 //! | `type()`, `space("file")` | the name of the output's type; the colour space of a picture |
@@ -43,7 +47,24 @@ pub(crate) trait Call {
     fn output(&self) -> (Type, &str);
 
     /// The colour space of the file that an input names, as the port `colorspace` has it.
-    fn color_space(&mut self, name: &str) -> Result<&'static str, Refusal>;
+    fn color_space(&mut self, _: &str) -> Result<&'static str, Refusal> {
+        Ok("auto")
+    }
+
+    /// The alpha of an input.
+    fn alpha(&mut self, _: &mut Builder, _: &str, _: Option<&Value>) -> Result<Value, Refusal> {
+        Ok(Value::float(1.0))
+    }
+
+    /// A part of the node's rule that has a name.
+    fn local(&self, _: &str) -> Option<&'static Expr> {
+        None
+    }
+
+    /// The number from which the node's random numbers are counted.
+    fn seed(&self) -> i32 {
+        0
+    }
 }
 
 /// A mistake of a table, not of a document.
@@ -77,7 +98,10 @@ struct Evaluation<'a> {
 impl Evaluation<'_> {
     fn value(&mut self, expr: &Expr) -> Result<Value, Refusal> {
         match expr {
-            Expr::Port(name, None) => self.call.input(self.builder, name, None),
+            Expr::Port(name, None) => match self.call.local(name) {
+                Some(part) => self.value(part),
+                None => self.call.input(self.builder, name, None),
+            },
             Expr::Port(name, Some(at)) => {
                 let at = self.value(at)?;
                 self.call.input(self.builder, name, Some(&at))
@@ -231,6 +255,62 @@ impl Evaluation<'_> {
                     _ => Ok(value),
                 }
             }
+            "rgb" => {
+                let mut parts = Vec::with_capacity(3);
+                for i in 0..3 {
+                    let part = self.value(argument(i)?)?;
+                    parts.push(self.builder.converted(part, Type::Float)?);
+                }
+                self.builder.combined(&parts, Type::Color3)
+            }
+            "alpha" => {
+                let at = match arguments.get(1) {
+                    Some((_, at)) => Some(self.value(at)?),
+                    None => None,
+                };
+                self.call.alpha(self.builder, text(0)?, at.as_ref())
+            }
+            "sum" => {
+                let count = self.whole(argument(0)?)?.clamp(1, LONGEST_SUM);
+                let outer = self.channel;
+                let mut sum = Value::float(0.0);
+                for i in 0..count {
+                    self.channel = Some(i);
+                    let term = self.value(argument(1)?)?;
+                    sum = self.binary('+', sum, term)?;
+                }
+                self.channel = outer;
+                Ok(sum)
+            }
+            "seed" => {
+                let offset = self.whole(argument(0)?)?;
+                Ok(Value::float(f64::from(self.call.seed()) + offset as f64))
+            }
+            "period" => self.period(arguments),
+            "sin" | "cos" if arguments.iter().all(|(key, _)| key.is_none()) => {
+                let value = self.value(argument(0)?)?;
+                match &value {
+                    Value::Literal(literal) => {
+                        let x = literal.numbers().first().copied().unwrap_or(0.0);
+                        Ok(Value::float(if name == "sin" { x.sin() } else { x.cos() }))
+                    }
+                    Value::Link(_) => {
+                        self.builder
+                            .node(name, vec![("in".to_owned(), value)], "out")
+                    }
+                }
+            }
+            "pow" => {
+                let (base, exponent) = (self.value(argument(0)?)?, self.value(argument(1)?)?);
+                if let (Value::Literal(a), Value::Literal(b)) = (&base, &exponent)
+                    && let ([a], [b]) = (a.numbers(), b.numbers())
+                    && a.powf(*b).is_finite()
+                {
+                    return Ok(Value::float(a.powf(*b)));
+                }
+                let inputs = vec![("in1".to_owned(), base), ("in2".to_owned(), exponent)];
+                self.builder.node("power", inputs, "out")
+            }
             "case" => self.case(argument(0)?, &arguments[1..]),
             "has" => {
                 let which = if self.builder.has(text(0)?) { 1 } else { 2 };
@@ -327,9 +407,28 @@ impl Evaluation<'_> {
                         .ok_or_else(|| wrong_rule("an input has a name"))?;
                     inputs.push((port, self.value(expr)?));
                 }
-                self.builder.node(name, inputs, output)
+                match literal_extremum(name, &inputs) {
+                    Some(value) => Ok(value),
+                    None => self.builder.node(name, inputs, output),
+                }
             }
         }
+    }
+
+    /// After how many cells a noise repeats that repeats with the unit square: of two numbers of
+    /// cells, and of the octave.
+    fn period(&mut self, arguments: &[(Option<String>, Expr)]) -> Result<Value, Refusal> {
+        let mut numbers = [0.0; 3];
+        for (number, (_, argument)) in numbers.iter_mut().zip(arguments) {
+            let value = self.value(argument)?;
+            if let Value::Literal(literal) = self.builder.decided(value) {
+                *number = literal.numbers().first().copied().unwrap_or(0.0);
+            }
+        }
+        let [x, y, octave] = numbers;
+        let cells = x * octave.exp2();
+        let repeats = x == y && x.fract() == 0.0 && (1.0..=65_536.0).contains(&cells);
+        Ok(Value::float(if repeats { cells } else { 0.0 }))
     }
 
     /// A literal whole number.
@@ -368,6 +467,21 @@ impl Evaluation<'_> {
                 ),
             }),
         }
+    }
+}
+
+/// The most terms of a sum: octaves beyond are finer than any texture is looked at.
+const LONGEST_SUM: usize = 16;
+
+/// The greater or lesser of two numbers that are literals.
+fn literal_extremum(name: &str, inputs: &[(String, Value)]) -> Option<Value> {
+    let [(_, Value::Literal(a)), (_, Value::Literal(b))] = inputs else {
+        return None;
+    };
+    match (name, a.numbers(), b.numbers()) {
+        ("min", [a], [b]) => Some(Value::float(a.min(*b))),
+        ("max", [a], [b]) => Some(Value::float(a.max(*b))),
+        _ => None,
     }
 }
 

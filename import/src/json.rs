@@ -85,13 +85,6 @@ impl Json {
             .filter(|x| *x >= 0.0 && x.fract() == 0.0 && *x < 1e9)?;
         Some(number as usize)
     }
-
-    pub(crate) const fn flag(&self) -> Option<bool> {
-        match self.value {
-            Content::Bool(flag) => Some(flag),
-            _ => None,
-        }
-    }
 }
 
 struct Reader<'a> {

@@ -1,5 +1,5 @@
-//! Reads texture graphs of other tools into Mipless's JSON document: MaterialX (`.mtlx`) and glTF
-//! (`KHR_texture_procedurals`).
+//! Reads texture graphs of other tools into Mipless's JSON document: MaterialX (`.mtlx`), Material
+//! Maker (`.ptex`) and glTF (`KHR_texture_procedurals`).
 //!
 //! ```text
 //! text ──read──► elements ──rules──► Document, and what was found
@@ -32,10 +32,13 @@ mod element;
 mod eval;
 mod gltf;
 mod json;
+mod materialmaker;
 mod materialx;
 mod matrix;
 mod place;
 mod rule;
+#[cfg(test)]
+mod tests;
 mod value;
 
 use build::Builder;
@@ -53,6 +56,8 @@ pub use place::Finding;
 pub enum Format {
     /// MaterialX, `.mtlx`.
     MaterialX,
+    /// Material Maker, `.ptex`.
+    MaterialMaker,
     /// glTF with `KHR_texture_procedurals`, `.gltf`.
     Gltf,
 }
@@ -63,6 +68,7 @@ impl Format {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {
             "mtlx" => Some(Self::MaterialX),
+            "ptex" => Some(Self::MaterialMaker),
             "gltf" => Some(Self::Gltf),
             _ => None,
         }
@@ -72,6 +78,7 @@ impl Format {
     pub const fn name(self) -> &'static str {
         match self {
             Self::MaterialX => "MaterialX",
+            Self::MaterialMaker => "Material Maker",
             Self::Gltf => "glTF",
         }
     }
@@ -248,6 +255,7 @@ fn keep_what_is_read(document: &mut Document) {
 pub fn import(format: Format, name: &str, text: &str, options: &Options<'_>) -> Imported {
     match format {
         Format::MaterialX => materialx::import(name, text, options),
+        Format::MaterialMaker => materialmaker::import(name, text, options),
         Format::Gltf => gltf::import(name, text, options),
     }
 }

@@ -61,13 +61,21 @@ impl Rules {
                 .expect("a rule is `name = expression`");
             rules.push((name.trim().to_owned(), rule.to_owned()));
         }
-        let parsed = rules.into_iter().map(|(name, rule)| {
-            let mut parser = Parser::new(&rule);
-            let expr = parser.sum();
-            assert!(parser.at_end(), "`{name}` goes on with `{}`", parser.rest());
-            (name, expr)
-        });
+        let parsed = rules
+            .into_iter()
+            .map(|(name, rule)| (name, Self::expression(&rule)));
         Self(parsed.collect())
+    }
+
+    /// One expression.
+    ///
+    /// # Panics
+    /// If it is none.
+    pub(crate) fn expression(text: &str) -> Expr {
+        let mut parser = Parser::new(text);
+        let expr = parser.sum();
+        assert!(parser.at_end(), "`{text}` goes on with `{}`", parser.rest());
+        expr
     }
 
     /// The rule of that name.
@@ -182,7 +190,11 @@ impl<'a> Parser<'a> {
             Some('"') => Expr::Text(self.quoted()),
             Some('$') => {
                 self.expect('$');
-                let name = self.word(is_name).to_owned();
+                let mut name = self.word(is_name).to_owned();
+                if self.text[self.at..].starts_with('#') {
+                    self.at += 1;
+                    name.push('#');
+                }
                 let at = self.take('(').then(|| {
                     let at = self.sum();
                     self.expect(')');
