@@ -165,7 +165,22 @@ impl Builder {
                 let value = self.converted(value, ty)?;
                 self.finish(node, port, value)
             }
-            PortType::Any => {
+            // Matrices are written as they are.
+            _ if matches!(value, Value::Literal(Literal::Matrix(_))) => match value {
+                Value::Literal(literal) => Ok(Some(Binding::Value(literal.to_json()))),
+                Value::Link(_) => mismatch("a signal"),
+            },
+            // Ports that take types of their own.
+            _ if port.ty != PortType::Any => {
+                let value = match &value {
+                    Value::Literal(
+                        literal @ Literal::Numbers(Type::Vector3 | Type::Vector4, _),
+                    ) => self.vector(literal)?,
+                    _ => value,
+                };
+                self.finish(node, port, value)
+            }
+            _ => {
                 let value = match (value.ty(), common) {
                     // A number goes to every component but alpha, where it goes here as well.
                     (Some(Type::Float | Type::Integer | Type::Boolean), Type::Color4)
@@ -378,7 +393,6 @@ fn output_type(spec: &NodeSpec, entry: &NodeEntry, common: Type) -> Type {
     };
     match spec.output {
         OutputType::Exactly(ty) => ty,
-        OutputType::Widest | OutputType::Whole => common,
         OutputType::Named(port) | OutputType::Picture { named: port, .. } => {
             named(port).unwrap_or(Type::Color3)
         }
@@ -397,6 +411,7 @@ fn output_type(spec: &NodeSpec, entry: &NodeEntry, common: Type) -> Type {
                 _ => Type::Float,
             }
         }
+        _ => common,
     }
 }
 

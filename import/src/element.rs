@@ -48,8 +48,10 @@ impl Element {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
     pub(crate) elements: Vec<Element>,
-    /// Children by name.
+    /// Children by name: nodes, inputs and outputs, which do not share their names.
     names: FxHashMap<(Id, String), Id>,
+    inputs: FxHashMap<(Id, String), Id>,
+    outputs: FxHashMap<(Id, String), Id>,
 }
 
 impl Tree {
@@ -62,6 +64,8 @@ impl Tree {
                 ..Element::default()
             }],
             names: FxHashMap::default(),
+            inputs: FxHashMap::default(),
+            outputs: FxHashMap::default(),
         }
     }
 
@@ -85,13 +89,13 @@ impl Tree {
         let id = Id(u32::try_from(self.elements.len()).unwrap_or(u32::MAX));
         element.parent = Some(parent);
         if !element.name.is_empty() {
-            // Of two children with one name, the first is meant; but a node before an input of its
-            // nodegraph.
-            let key = (parent, element.name.clone());
-            match self.names.get(&key) {
-                Some(first) if self.get(*first).tag != "input" || element.tag == "input" => {}
-                _ => drop(self.names.insert(key, id)),
-            }
+            // Of two children with one name, the first is meant.
+            let names = match element.tag.as_str() {
+                "input" => &mut self.inputs,
+                "output" => &mut self.outputs,
+                _ => &mut self.names,
+            };
+            names.entry((parent, element.name.clone())).or_insert(id);
         }
         self.elements.push(element);
         self.get_mut(parent).children.push(id);
@@ -102,9 +106,12 @@ impl Tree {
         self.get(id).children.iter().copied()
     }
 
-    /// The child of that name; a name may lack the namespace that the element has.
+    /// The child of that name, a node before an input or output; a name may lack the namespace that
+    /// the element has.
     pub(crate) fn child(&self, parent: Id, name: &str) -> Option<Id> {
-        if let Some(id) = self.names.get(&(parent, name.to_owned())) {
+        let key = (parent, name.to_owned());
+        let found = [&self.names, &self.inputs, &self.outputs];
+        if let Some(id) = found.iter().find_map(|names| names.get(&key)) {
             return Some(*id);
         }
         let namespace = self.get(parent).attribute("namespace")?;
@@ -112,12 +119,29 @@ impl Tree {
         self.names.get(&(parent, name)).copied()
     }
 
-    /// The child `<input name="…">` of a node.
+    /// The child `<input name="…">`.
     pub(crate) fn input(&self, node: Id, name: &str) -> Option<Id> {
-        (self.children(node)).find(|id| {
-            let element = self.get(*id);
-            element.tag == "input" && element.name == name
-        })
+        self.inputs.get(&(node, name.to_owned())).copied()
+    }
+
+    /// The child `<output name="…">`.
+    pub(crate) fn output(&self, graph: Id, name: &str) -> Option<Id> {
+        self.outputs.get(&(graph, name.to_owned())).copied()
+    }
+
+    /// Gives an input another name.
+    pub(crate) fn rename_input(&mut self, node: Id, id: Id, name: &str) {
+        let old = std::mem::replace(&mut self.get_mut(id).name, name.to_owned());
+        self.inputs.remove(&(node, old));
+        self.inputs.insert((node, name.to_owned()), id);
+    }
+
+    /// Takes the children of an element away.
+    pub(crate) fn clear(&mut self, id: Id) {
+        for child in std::mem::take(&mut self.get_mut(id).children) {
+            let name = self.get(child).name.clone();
+            self.inputs.remove(&(id, name));
+        }
     }
 
     /// The children of a kind.

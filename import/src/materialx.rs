@@ -58,7 +58,7 @@ pub(crate) fn of_tree(tree: Tree, findings: Findings, options: &Options<'_>) -> 
         }
         Some(root)
     });
-    let mut network = Network::new(tree, findings, rules(), library);
+    let mut network = Network::new(tree, findings, rules(), library, options.specs);
     let start = Place {
         file: 0,
         offset: 0,

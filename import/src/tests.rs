@@ -36,7 +36,7 @@ fn no_part_of_a_rule_reads_itself() {
         while let Some(part) = open.pop() {
             steps += 1;
             assert!(steps < 2_000, "`{name}` reads itself");
-            let Some(expr) = rules.get(&part) else {
+            let Some(expr) = rules.get(&part, |_| false) else {
                 continue;
             };
             let mut found = Vec::new();

@@ -10,16 +10,19 @@ use super::definition::{Definition, Definitions};
 use crate::build::{Builder, Refusal};
 use crate::element::{Id, Tree};
 use crate::place::Findings;
-use crate::rule::Rules;
+use crate::rule::{Expr, Rules};
 use crate::value::Value;
 use call::NodeCall;
-use mipless_graph::{Diagnostic, Type};
+use mipless_graph::{Diagnostic, NodeSpec, Type};
 use origin::Origin;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 
 /// How deep functional nodegraphs may use each other.
 const DEEPEST: usize = 64;
+
+/// How often functional nodegraphs may be used.
+const MOST_SCOPES: usize = 100_000;
 
 /// A nodegraph in use.
 #[derive(Debug)]
@@ -81,11 +84,15 @@ pub(crate) struct Network<'a> {
     own: Definitions,
     library: Library<'a>,
     rules: &'static Rules,
+    /// The nodes of the catalogue, and `node.port` for their ports.
+    known: FxHashSet<String>,
     scopes: Vec<Scope>,
     /// Scopes by where they are used.
     inner: FxHashMap<(usize, Id), usize>,
     outer: FxHashMap<Id, usize>,
     plans: FxHashMap<Id, Plan>,
+    /// What definitions of documents are made of, by where they stand and their names.
+    implementations: FxHashMap<(Id, String), Plan>,
     done: FxHashMap<Key, Result<Value, ()>>,
     /// Inputs of the graph by the elements that declare them.
     pub(super) inputs: FxHashMap<Id, String>,
@@ -99,6 +106,7 @@ impl<'a> Network<'a> {
         findings: Findings,
         rules: &'static Rules,
         library: Library<'a>,
+        specs: &[&'static NodeSpec],
     ) -> Self {
         let own = Definitions::of(&tree, Tree::ROOT);
         let prefixed = tree.tagged(Tree::ROOT, "nodegraph").count() > 1;
@@ -108,10 +116,20 @@ impl<'a> Network<'a> {
             own,
             library,
             rules,
+            known: (specs.iter())
+                .flat_map(|spec| {
+                    let ports = spec
+                        .inputs
+                        .iter()
+                        .map(|port| format!("{}.{}", spec.name, port.name));
+                    ports.chain([spec.name.to_owned()])
+                })
+                .collect(),
             scopes: Vec::new(),
             inner: FxHashMap::default(),
             outer: FxHashMap::default(),
             plans: FxHashMap::default(),
+            implementations: FxHashMap::default(),
             done: FxHashMap::default(),
             inputs: FxHashMap::default(),
             prefixed,
@@ -154,11 +172,9 @@ impl<'a> Network<'a> {
             let message = format!("nodegraphs use each other more than {DEEPEST} deep");
             return Err(Refusal::new("import-limit", message));
         }
-        if self.scopes.len() >= crate::build::MOST_NODES {
-            return Err(Refusal::new(
-                "import-limit",
-                "nodegraphs are used more than a million times",
-            ));
+        if self.scopes.len() >= MOST_SCOPES {
+            let message = format!("nodegraphs are used more than {MOST_SCOPES} times");
+            return Err(Refusal::new("import-limit", message));
         }
         let prefix = format!("{}{}_", self.scopes[scope].prefix, self.tree.get(node).name);
         self.scopes.push(Scope {
@@ -292,12 +308,13 @@ impl<'a> Network<'a> {
         }
     }
 
-    /// The output of a nodegraph by name, or its only one.
+    /// The output of a nodegraph by name, or its first where none is named.
     pub(crate) fn graph_output(&self, graph: Id, name: &str) -> Option<Id> {
-        let mut outputs = self.tree.tagged(graph, "output");
-        let named =
-            (self.tree.tagged(graph, "output")).find(|output| self.tree.get(*output).name == name);
-        named.or_else(|| outputs.next().filter(|_| name == "out" || name.is_empty()))
+        let only = || self.tree.tagged(graph, "output").next();
+        let unnamed = name == "out" || name.is_empty();
+        self.tree
+            .output(graph, name)
+            .or_else(|| if unnamed { only() } else { None })
     }
 
     /// An output of a node whose inputs are there.
@@ -338,7 +355,7 @@ impl<'a> Network<'a> {
                     }
                 };
                 let rules = self.rules;
-                let rule = (rules.get(&definition.name)).or_else(|| rules.get(&definition.node));
+                let rule = rule_of(rules, &definition, builder);
                 let mut call = NodeCall::new(self, key, &definition, &output, &ty);
                 let value = match rule {
                     Some(rule) => crate::eval::eval(rule, builder, &mut call),
@@ -376,13 +393,13 @@ impl<'a> Network<'a> {
     fn find_plan(&mut self, node: Id) -> Result<Plan, Refusal> {
         let own = find(&self.own, &self.tree, node).cloned();
         if let Some(definition) = own {
-            return self.implementation(definition, Tree::ROOT);
+            return Ok(self.implemented(definition, Tree::ROOT));
         }
         let standard = find(Definitions::standard(), &self.tree, node).cloned();
         let Some(definition) = standard else {
             // A node of one of MaterialX's libraries that are no part of the table.
             if let Some((root, definition)) = self.in_library(node) {
-                return self.implementation(definition, root);
+                return Ok(self.implemented(definition, root));
             }
             let element = self.tree.get(node);
             let known = self.own.knows(&element.tag) || Definitions::standard().knows(&element.tag);
@@ -396,7 +413,31 @@ impl<'a> Network<'a> {
                 Refusal::new("import-node-missing", message)
             });
         };
-        Ok(Plan::Nodes(Rc::new(definition)))
+        let has = |port: &str| self.known.contains(port);
+        let ruled = [&definition.name, &definition.node];
+        if self.known.contains(&definition.node)
+            || ruled.iter().any(|name| self.rules.get(name, has).is_some())
+        {
+            return Ok(Plan::Nodes(Rc::new(definition)));
+        }
+        // A node that is not here may be made of others in MaterialX's own documents.
+        match self.in_library(node) {
+            Some((root, definition)) => Ok(self.implemented(definition, root)),
+            None => Ok(Plan::Nodes(Rc::new(definition))),
+        }
+    }
+
+    /// What a definition is made of; found once.
+    fn implemented(&mut self, definition: Definition, root: Id) -> Plan {
+        let key = (root, definition.name.clone());
+        if let Some(plan) = self.implementations.get(&key) {
+            return plan.clone();
+        }
+        let plan = self
+            .implementation(definition, root)
+            .unwrap_or_else(Plan::Refused);
+        self.implementations.insert(key, plan.clone());
+        plan
     }
 
     /// What a definition of a document, or of a library, is made of.
@@ -415,12 +456,7 @@ impl<'a> Network<'a> {
             }
             foreign = foreign.or(Some(implementation));
         }
-        let standard = Definitions::standard().named(&definition.name).is_some();
-        let rules = self
-            .rules
-            .get(&definition.name)
-            .or_else(|| self.rules.get(&definition.node));
-        if standard || rules.is_some() {
+        if Definitions::standard().named(&definition.name).is_some() {
             return Ok(Plan::Nodes(Rc::new(definition)));
         }
         Err(match foreign {
@@ -452,6 +488,12 @@ impl<'a> Network<'a> {
         let definition = find(definitions, &self.tree, node)?.clone();
         Some((*root, definition))
     }
+}
+
+/// The rule of a definition, or of its node.
+fn rule_of<'r>(rules: &'r Rules, definition: &Definition, builder: &Builder) -> Option<&'r Expr> {
+    let rule = |name: &str| rules.get(name, |port| builder.has(port));
+    rule(&definition.name).or_else(|| rule(&definition.node))
 }
 
 /// The definition that a node means.

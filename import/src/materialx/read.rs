@@ -50,7 +50,15 @@ impl<'a> Reader<'a> {
             allow_dtd: false,
             nodes_limit: 32_000_000,
         };
-        let parsed = match Document::parse_with_options(&strict(&text), options) {
+        let strict = match strict(&text) {
+            Ok(strict) => strict,
+            Err(offset) => {
+                let message = format!("elements are nested more than {NESTED} deep");
+                self.say(file, offset, Diagnostic::error("import-limit", message));
+                return None;
+            }
+        };
+        let parsed = match Document::parse_with_options(&strict, options) {
             Ok(parsed) => copy(&parsed, file),
             Err(error) => {
                 let place = error.pos();
@@ -192,12 +200,15 @@ fn inherit(element: &mut Element, scope: &[(String, String)]) {
 /// Stands for `<` inside of attributes, where XML has none and documents of pictures have.
 const LESS: char = '\u{7f}';
 
+/// How deep elements may be nested: the parser recurses, and no document needs ten.
+const NESTED: usize = 256;
+
 /// The text as XML that a strict reader takes, with as many bytes as before, so that places stay:
 /// `.` for the colon of prefixes in names of elements, which nothing declares, and [`LESS`] for `<`
-/// inside of attributes.
-fn strict(text: &str) -> String {
+/// inside of attributes. Where elements are nested too deep, the byte where that is.
+fn strict(text: &str) -> Result<String, usize> {
     let mut bytes = text.as_bytes().to_vec();
-    let mut at = 0;
+    let (mut at, mut depth) = (0, 0_usize);
     let after = |from: usize, end: &str| match text.get(from..).and_then(|rest| rest.find(end)) {
         Some(found) => from + found + end.len(),
         None => text.len(),
@@ -210,30 +221,47 @@ fn strict(text: &str) -> String {
             at = after(at, end);
             continue;
         }
-        at += 1;
-        while let Some(byte) = bytes.get_mut(at) {
-            match byte {
-                b':' => *byte = b'.',
-                b'/' | b'_' | b'-' | b'.' => {}
-                byte if byte.is_ascii_alphanumeric() => {}
-                _ => break,
-            }
-            at += 1;
+        let start = at;
+        at = tag(&mut bytes, at + 1);
+        match (
+            bytes.get(start + 1),
+            at.checked_sub(1).and_then(|last| bytes.get(last)),
+        ) {
+            (Some(b'/'), _) => depth = depth.saturating_sub(1),
+            (_, Some(b'/')) => {}
+            _ => depth += 1,
         }
-        let mut quote = None;
-        while let Some(byte) = bytes.get_mut(at) {
-            match (quote, *byte) {
-                (None, b'>' | b'<') => break,
-                (None, b'"' | b'\'') => quote = Some(*byte),
-                (Some(open), byte) if open == byte => quote = None,
-                (Some(_), b'<') => *byte = LESS as u8,
-                _ => {}
-            }
-            at += 1;
+        if depth > NESTED {
+            return Err(start);
         }
     }
     // ASCII has become ASCII.
-    String::from_utf8(bytes).unwrap_or_else(|_| text.to_owned())
+    Ok(String::from_utf8(bytes).unwrap_or_else(|_| text.to_owned()))
+}
+
+/// Makes a tag strict that begins before `at`; the place of its end.
+fn tag(bytes: &mut [u8], mut at: usize) -> usize {
+    while let Some(byte) = bytes.get_mut(at) {
+        match byte {
+            b':' => *byte = b'.',
+            b'/' | b'_' | b'-' | b'.' => {}
+            byte if byte.is_ascii_alphanumeric() => {}
+            _ => break,
+        }
+        at += 1;
+    }
+    let mut quote = None;
+    while let Some(byte) = bytes.get_mut(at) {
+        match (quote, *byte) {
+            (None, b'>' | b'<') => break,
+            (None, b'"' | b'\'') => quote = Some(*byte),
+            (Some(open), byte) if open == byte => quote = None,
+            (Some(_), b'<') => *byte = LESS as u8,
+            _ => {}
+        }
+        at += 1;
+    }
+    at
 }
 
 /// An element and the position of its parent.

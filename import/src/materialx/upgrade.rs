@@ -21,7 +21,7 @@ pub(super) fn upgrade(tree: &mut Tree) {
         let tag = tree.get(id).tag.clone();
         for (_, old, new) in RENAMED.iter().filter(|(node, ..)| *node == tag) {
             if let Some(input) = tree.input(id, old) {
-                (*new).clone_into(&mut tree.get_mut(input).name);
+                tree.rename_input(id, input, new);
             }
         }
         match tag.as_str() {
@@ -53,7 +53,7 @@ fn object_space(tree: &mut Tree, id: Id) {
         return;
     };
     let is_object = tree.get(space).attribute("value") == Some("object");
-    "space_of_1_38".clone_into(&mut tree.get_mut(space).name);
+    tree.rename_input(id, space, "space_of_1_38");
     if !is_object {
         return;
     }
@@ -86,7 +86,7 @@ fn object_space(tree: &mut Tree, id: Id) {
     let node = tree.get_mut(id);
     "normalize".clone_into(&mut node.tag);
     node.remove("nodedef");
-    node.children.clear();
+    tree.clear(id);
     linked_input(tree, id, "in", "vector3", &format!("{name}__moved"));
 }
 
@@ -160,7 +160,7 @@ fn swizzle(tree: &mut Tree, id: Id) {
         .unwrap_or_default();
     let from = source.and_then(|source| tree.get(source).attribute("type").map(str::to_owned));
     let from = from.unwrap_or_else(|| "float".to_owned());
-    tree.get_mut(id).children.clear();
+    tree.clear(id);
     tree.get_mut(id).remove("nodedef");
     let index = |i: usize| match channels.chars().nth(i) {
         Some('0') => Err("0"),

@@ -6,8 +6,8 @@ use crate::eval::Call;
 use crate::materialx::definition::Definition;
 use crate::materialx::literal;
 use crate::materialx::network::origin::Origin;
-use crate::value::{Literal, Value};
-use mipless_graph::{Default as PortDefault, PortType, Type};
+use crate::value::{Link, Literal, Value};
+use mipless_graph::{Default as PortDefault, OutputType, PortType, Type};
 use std::rc::Rc;
 
 /// A node whose inputs are made.
@@ -79,7 +79,35 @@ impl<'n, 'a> NodeCall<'n, 'a> {
             };
             inputs.push((input.name.clone(), value));
         }
-        builder.node(&definition.node, inputs, "out")
+        for port in spec.inputs {
+            let PortType::Choice(names) = port.ty else {
+                continue;
+            };
+            let wanted = match port.name {
+                "signature" | "to" => self.ty,
+                "hash" => "materialx",
+                _ => continue,
+            };
+            if definition.input(port.name).is_none() && names.contains(&wanted) {
+                let name = Value::Literal(Literal::Text(wanted.to_owned()));
+                inputs.push((port.name.to_owned(), name));
+            }
+        }
+        let value = builder.node(&definition.node, inputs, "out")?;
+        // Types that follow from the inputs in other ways are those of the definition.
+        let known = matches!(
+            spec.output,
+            OutputType::Exactly(_)
+                | OutputType::Widest
+                | OutputType::Whole
+                | OutputType::Named(_)
+                | OutputType::Stops
+                | OutputType::Picture { .. }
+        );
+        Ok(match (value, Type::by_name(self.ty)) {
+            (Value::Link(link), Some(ty)) if !known => Value::Link(Link { ty, ..link }),
+            (value, _) => value,
+        })
     }
 }
 
