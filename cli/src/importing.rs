@@ -1,35 +1,11 @@
 //! Documents of other tools, read where a graph is wanted.
 
-use crate::load::{self, Written};
 use crate::mistake::Mistake;
 use crate::report::Report;
-use clap::Args;
-use mipless::{Diagnostic, Severity};
+use mipless::{Diagnostic, Files, Severity};
 use mipless_import::{Finding, Format, Imported, Options, import};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// How they are read.
-#[derive(Args, Clone, Debug, Default)]
-pub(crate) struct Arguments {
-    /// Of a .mtlx or .gltf, read this material, shader or nodegraph alone [default: every material,
-    /// or every nodegraph where there is none]
-    #[arg(long, global = true, value_name = "NAME")]
-    material: Option<String>,
-
-    /// Where MaterialX's own documents are, for nodes that are made of other nodes [default: the
-    /// folders in MATERIALX_SEARCH_PATH]
-    #[arg(long, global = true, value_name = "DIR")]
-    library: Option<PathBuf>,
-
-    /// Refuse documents of which something is approximated
-    #[arg(long, global = true)]
-    strict: bool,
-
-    /// Take what loads of a document, and leave out the outputs that do not
-    #[arg(long, global = true, conflicts_with = "strict")]
-    partial: bool,
-}
 
 /// The largest document of an installation, how deep its folders are, and how many there are.
 const LARGEST: u64 = 16 << 20;
@@ -41,9 +17,10 @@ pub(crate) fn graph(
     format: Format,
     path: &Path,
     text: &str,
+    files: &dyn Files,
     report: &mut Report,
-) -> Result<Written, Mistake> {
-    let mut imported = read(format, path, text, report)?;
+) -> Result<(String, Imported), Mistake> {
+    let mut imported = read(format, path, text, files, report)?;
     let arguments = report.importing().clone();
     let is_refused = |finding: &Finding| finding.diagnostic.is_error();
     if arguments.strict {
@@ -84,16 +61,18 @@ pub(crate) fn graph(
         report.note(format_args!("{}: {}", path.display(), imported.summary()));
     }
     let text = (imported.document.as_ref()).map_or(String::new(), |document| document.to_text());
-    Ok(Written {
-        text,
-        imported: Some(imported),
-    })
+    Ok((text, imported))
 }
 
 /// Reads a document.
-fn read(format: Format, path: &Path, text: &str, report: &Report) -> Result<Imported, Mistake> {
+fn read(
+    format: Format,
+    path: &Path,
+    text: &str,
+    files: &dyn Files,
+    report: &Report,
+) -> Result<Imported, Mistake> {
     let arguments = report.importing();
-    let files = load::files(path, report)?;
     let library = arguments.library.as_deref();
     if let Some(folder) = library.filter(|folder| !folder.is_dir()) {
         let message = format!("`--library {}`: there is no such folder", folder.display());
@@ -119,7 +98,7 @@ fn shown(path: &Path, file: &str) -> String {
     if file.is_empty() || file == file_name(path) {
         path.display().to_string()
     } else {
-        load::folder_of(path).join(file).display().to_string()
+        path.with_file_name(file).display().to_string()
     }
 }
 

@@ -43,7 +43,14 @@ pub(crate) struct Written {
 pub(crate) fn graph(path: &Path, report: &mut Report) -> Result<Written, Mistake> {
     let text = read(path)?;
     match Format::of(path) {
-        Some(format) => importing::graph(format, path, &text, report),
+        Some(format) => {
+            let files = files(path, report)?;
+            let (text, imported) = importing::graph(format, path, &text, &*files, report)?;
+            Ok(Written {
+                text,
+                imported: Some(imported),
+            })
+        }
         None => Ok(Written {
             text,
             imported: None,

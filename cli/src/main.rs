@@ -8,6 +8,7 @@ mod check;
 mod compare;
 mod compile;
 mod completions;
+mod foreign;
 mod import;
 mod importing;
 mod load;
@@ -51,7 +52,7 @@ struct Cli {
     root: Option<PathBuf>,
 
     #[command(flatten)]
-    importing: importing::Arguments,
+    importing: foreign::Arguments,
 
     #[command(subcommand)]
     verb: Verb,

@@ -4,7 +4,7 @@
 //! output. With `--json`, standard output gets one object in the end, and standard error nothing.
 //! A reader that closes either of them early is no mistake.
 
-use crate::importing::Arguments as Importing;
+use crate::foreign::Arguments as Importing;
 use crate::mistake::{Mistake, Status};
 use mipless::Diagnostic;
 use serde_json::{Map, Value, json};
