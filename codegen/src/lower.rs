@@ -15,6 +15,7 @@ mod function;
 mod fusion;
 mod image;
 mod input;
+mod instead;
 mod map;
 mod method;
 mod mixture;
@@ -550,17 +551,6 @@ impl<'g, 'b> Lower<'g, 'b> {
             }
             self.bundles[index] = Some(bundle);
         }
-    }
-
-    /// What takes the place of a closed form that the audit found to be wrong.
-    fn instead(&mut self, index: usize, closed: &[Signal<'b>]) -> Option<Bundle<'b>> {
-        let mut found = self.repeated(index, closed);
-        if let Some(sampling) = self.sampling(index) {
-            let closed = found.unwrap_or_else(|| closed.to_vec());
-            found = Some(self.sampled(index, &closed, sampling));
-        }
-        let drawn = self.drawn(index, found.as_deref().unwrap_or(closed));
-        drawn.or(found)
     }
 
     fn name(&self, node: &Node, bundle: &Bundle<'b>) {
