@@ -37,13 +37,17 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     let graph = load::graph(path, report)?;
     // A graph that is written has been checked, so that what it cannot be is said here.
     let checked = load::parse(path, &graph, &CheckOptions::default(), report);
+    let text = match &checked {
+        Ok(texture) => texture.document().to_text(),
+        Err(_) => graph.text.clone(),
+    };
     let summary = graph
         .imported
         .as_ref()
         .map(mipless_import::Imported::summary);
     match &arguments.out {
         Some(out) => {
-            write_whole(out, graph.text.as_bytes()).map_err(|error| {
+            write_whole(out, text.as_bytes()).map_err(|error| {
                 Mistake::usage("unwritable-file", format!("{}: {error}", out.display()))
             })?;
             if let Some(summary) = summary {
@@ -51,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
             }
             report.result("files", vec![out.display().to_string()]);
         }
-        None => report.print(&graph.text),
+        None => report.print(&text),
     }
     if let Some(imported) = &graph.imported {
         report.result("summary", imported.summary());

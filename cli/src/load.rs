@@ -82,7 +82,20 @@ pub(crate) fn parse(
     report: &Report,
 ) -> Result<Texture, Mistake> {
     let files = files(path, report)?;
-    Texture::with_name(&name_of_file(path), &graph.text, options, &*files).map_err(|diagnostics| {
+    let name = name_of_file(path);
+    let checked = Texture::with_name(&name, &graph.text, options, &*files);
+    let fixed = graph.imported.as_ref().filter(|_| checked.is_err());
+    if let Some(document) = fixed.and_then(Imported::without_inputs)
+        && let Ok(texture) = Texture::with_name(&name, &document.to_text(), options, &*files)
+    {
+        report.note(format_args!(
+            "{}: the inputs are written as the numbers that they hold, since not all that they may \
+             be is a texture",
+            path.display()
+        ));
+        return Ok(texture);
+    }
+    checked.map_err(|diagnostics| {
         let located = match &graph.imported {
             Some(imported) => (diagnostics.into_iter())
                 .map(|diagnostic| imported.located(diagnostic).diagnostic)

@@ -420,14 +420,16 @@ fn is_default(port: &PortSpec, literal: &Literal) -> bool {
     let numbers = literal.numbers();
     let all = |x: f32| !numbers.is_empty() && numbers.iter().all(|y| *y == f64::from(x));
     let each = |xs: &[f32]| numbers.iter().copied().eq(xs.iter().map(|x| f64::from(*x)));
-    match (port.ty, port.default) {
-        // The type of the node follows from what is written.
-        (PortType::Any, _) => false,
-        (_, PortDefault::Float(x)) => all(x),
-        (_, PortDefault::Integer(x)) => numbers == [f64::from(x)],
-        (_, PortDefault::Boolean(x)) => numbers == [f64::from(u8::from(x))],
-        (_, PortDefault::Vector2(x)) => each(&x),
-        (_, PortDefault::Color3(x)) => each(&x),
+    // Elsewhere the type of the node follows from what is written.
+    if !matches!(port.ty, PortType::Exactly(_)) {
+        return false;
+    }
+    match port.default {
+        PortDefault::Float(x) => all(x),
+        PortDefault::Integer(x) => numbers == [f64::from(x)],
+        PortDefault::Boolean(x) => numbers == [f64::from(u8::from(x))],
+        PortDefault::Vector2(x) => each(&x),
+        PortDefault::Color3(x) => each(&x),
         _ => false,
     }
 }

@@ -190,6 +190,29 @@ impl Imported {
         format!("{loads} of {} output{s}", self.outputs.len())
     }
 
+    /// The graph with its inputs written as the numbers that they hold, for graphs that do not check
+    /// over all that an input may be; nothing where it has none.
+    pub fn without_inputs(&self) -> Option<Document> {
+        let mut document = self.document.clone()?;
+        let body = &mut document.body;
+        // Three or four numbers alone are a colour, which such a vector is not.
+        let is_kept = |ty: &str| matches!(ty, "vector3" | "vector4");
+        let mut written = false;
+        for node in body.nodes.values_mut() {
+            for binding in node.inputs.values_mut() {
+                if let Binding::Input(name) = binding
+                    && let Some(entry) = body.inputs.get(name)
+                    && !is_kept(&entry.ty)
+                {
+                    *binding = Binding::Value(entry.value.clone());
+                    written = true;
+                }
+            }
+        }
+        body.inputs.retain(|_, entry| is_kept(&entry.ty));
+        written.then_some(document)
+    }
+
     /// A diagnostic about the graph, at the place in the document that its node comes from.
     pub fn located(&self, diagnostic: Diagnostic) -> Finding {
         let node = diagnostic.pointer.as_deref().and_then(|pointer| {

@@ -10,7 +10,7 @@ use crate::build::{Builder, Refusal};
 use crate::json::Json;
 use crate::place::{Findings, Place, Source};
 use crate::rule::{Expr, Rules};
-use crate::value::{Link, Literal, Value};
+use crate::value::{Literal, Value};
 use crate::{Imported, Options, Output};
 use call::NodeCall;
 use graph::Graphs;
@@ -406,8 +406,5 @@ fn input(builder: &mut Builder, name: &str) -> Value {
         value: Literal::float(0.0).to_json(),
         ..mipless_graph::InputEntry::default()
     };
-    let Value::Link(link) = builder.input(name, entry, Type::Float) else {
-        return Value::float(0.0);
-    };
-    Value::Link(Link { ..link })
+    builder.input(name, entry, Type::Float)
 }

@@ -50,8 +50,79 @@ fn no_part_of_a_rule_reads_itself() {
     }
 }
 
-/// The nodes that rules make exist, with the inputs that are named; checked where the catalogue is
-/// at hand (`tests/tests/importing.rs`).
+/// Words of the language, which are no nodes.
+const WORDS: [&str; 21] = [
+    "alpha",
+    "as",
+    "case",
+    "channel",
+    "determinant",
+    "each",
+    "entry",
+    "fold",
+    "given",
+    "has",
+    "index",
+    "input",
+    "invertmatrix",
+    "note",
+    "part",
+    "period",
+    "pow",
+    "refuse",
+    "rgb",
+    "rgba",
+    "seed",
+];
+const MORE_WORDS: [&str; 4] = ["space", "sum", "transpose", "type"];
+
+/// The schema of graphs lists every node with its inputs.
+#[test]
+fn rules_make_nodes_that_are_there_with_inputs_that_they_have() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../graph/graph.schema.json");
+    let text = std::fs::read_to_string(path).expect("the schema stands beside the crate");
+    let schema: serde_json::Value = serde_json::from_str(&text).expect("the schema is JSON");
+    for text in [
+        include_str!("materialx/rules.txt"),
+        include_str!("materialmaker/rules.txt"),
+    ] {
+        for (name, rule) in Rules::parse(text).iter() {
+            let mut found = Vec::new();
+            inside(rule, &mut found);
+            for expr in found {
+                let Expr::Call {
+                    name: node,
+                    arguments,
+                    ..
+                } = expr
+                else {
+                    continue;
+                };
+                let is_word = WORDS.contains(&node.as_str()) || MORE_WORDS.contains(&node.as_str());
+                let unnamed = arguments.iter().any(|(key, _)| key.is_none());
+                // Made where it is there.
+                let is_new = node == "srgbtolinear";
+                if is_word || unnamed || is_new {
+                    continue;
+                }
+                let spec = &schema["$defs"][format!("node.{node}")]["properties"];
+                assert!(
+                    spec.is_object(),
+                    "`{name}` makes `{node}`, which is not there"
+                );
+                for (port, _) in arguments {
+                    let port = port.as_deref().unwrap_or("");
+                    let ports = &spec["inputs"]["properties"];
+                    assert!(
+                        ports[port].is_object(),
+                        "`{name}`: `{node}` has no `{port}`"
+                    );
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn every_refusal_has_a_known_code() {
     for text in [

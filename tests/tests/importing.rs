@@ -137,6 +137,20 @@ fn an_input_that_feeds_a_bounded_port_is_bounded_as_it_is() {
 }
 
 #[test]
+fn inputs_may_be_written_as_the_numbers_that_they_hold() {
+    let imported = mtlx(
+        r#"<nodegraph name="g"><input name="size" type="float" value="2"/><texcoord name="uv" type="vector2"/>
+           <multiply name="m" type="float"><input name="in1" type="float" interfacename="size"/><input name="in2" type="float" value="2"/></multiply>
+           <divide name="n" type="vector2"><input name="in1" type="vector2" nodename="uv"/><input name="in2" type="float" nodename="m"/></divide>
+           <output name="out" type="vector2" nodename="n"/></nodegraph>"#,
+    );
+    let document = imported.without_inputs().expect("it has an input");
+    assert!(document.body.inputs.is_empty());
+    let checked = Texture::from_json(&document.to_text());
+    assert!(checked.is_ok(), "{checked:?}");
+}
+
+#[test]
 fn functional_nodegraphs_are_expanded_where_they_are_used() {
     let imported = mtlx(
         r#"<nodedef name="ND_twice" node="twice"><input name="in" type="float" value="3"/><output name="out" type="float"/></nodedef>

@@ -83,13 +83,16 @@ impl<'n, 'a> NodeCall<'n, 'a> {
             let PortType::Choice(names) = port.ty else {
                 continue;
             };
+            // `ND_randomfloat_integer` is told by its last word, others by their result.
+            let last = definition.name.rsplit('_').next().unwrap_or("");
             let wanted = match port.name {
-                "signature" | "to" => self.ty,
-                "hash" => "materialx",
+                "signature" | "to" => [last, self.ty],
+                "hash" => ["materialx"; 2],
                 _ => continue,
             };
-            if definition.input(port.name).is_none() && names.contains(&wanted) {
-                let name = Value::Literal(Literal::Text(wanted.to_owned()));
+            let named = wanted.iter().find(|name| names.contains(name));
+            if let Some(name) = named.filter(|_| definition.input(port.name).is_none()) {
+                let name = Value::Literal(Literal::Text((*name).to_owned()));
                 inputs.push((port.name.to_owned(), name));
             }
         }
