@@ -16,5 +16,6 @@ pub mod wgsl;
 
 pub use lower::{
     Audit, AuditedBand, AuditedOutput, Bundle, Lower, Method, NodeDef, NodeRule, Options, Over,
-    ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Upstream, Widened, audit, compile,
+    ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Slopes, Upstream, Widened, audit,
+    compile,
 };

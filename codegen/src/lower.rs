@@ -23,6 +23,7 @@ mod rule;
 mod sampled;
 mod sampling;
 mod shape;
+mod slope;
 mod symbols;
 mod table;
 mod taps;
@@ -32,6 +33,7 @@ mod upstream;
 pub use audit::{Audit, AuditedBand, AuditedOutput, Remedy, Replaced};
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
+pub use slope::Slopes;
 pub use upstream::{Over, Upstream, Widened};
 
 use crate::ir::{Builder, Float, FunctionRef, Interface, Label, Library, Module, Port, Program};
@@ -438,7 +440,8 @@ impl<'g, 'b> Lower<'g, 'b> {
             }
             self.is_only_measured = self.only_measured.get(index) == Some(&true);
             let forks = uses[index] > 1;
-            self.algebra.shares = forks;
+            self.algebra.shares = forks || self.algebra.derives;
+            let details = self.details.len();
             let kept = forks.then(|| self.algebra.next_symbol());
             let definition = &self.compiler.catalogue[node.definition];
             assert_eq!(
@@ -457,14 +460,23 @@ impl<'g, 'b> Lower<'g, 'b> {
                 node.spec.name
             );
             self.nonlinear |= self.algebra.bent;
+            let mut slopes = self.slopes_of(&bundle, details);
             if let Some(fused) = self.fuse(index, node, &bundle) {
                 bundle = fused;
+                for (slope, signal) in slopes.iter_mut().zip(&bundle) {
+                    if let Some(own) = &signal.slope {
+                        *slope = Some(own.clone());
+                    }
+                }
             }
             if let Some(other) = self.instead(index, &bundle) {
                 bundle = other;
                 self.chains[index] = None;
                 self.pairs[index] = None;
                 self.sums[index] = None;
+            }
+            if self.algebra.derives {
+                self.put_slopes(&mut bundle, slopes);
             }
             self.carriers.born(&bundle);
             // Inputs that nothing else reads are gone: a symbol that only this signal still carries
@@ -480,11 +492,17 @@ impl<'g, 'b> Lower<'g, 'b> {
                 }
             }
             let kept = kept.unwrap_or(Symbol(u32::MAX));
-            self.carriers
-                .retire(&mut bundle, kept, self.compiler.facts.crossed[index]);
+            if !self.algebra.derives {
+                self.carriers
+                    .retire(&mut bundle, kept, self.compiler.facts.crossed[index]);
+            }
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
+                    // What a linear node passes on is no fresh part of it, and has several readers now.
+                    if let Some(symbol) = self.algebra.publish(signal) {
+                        self.carriers.gained(symbol);
+                    }
                     if signal.hermite.is_none() {
                         let symbol = self.algebra.fresh_symbol();
                         signal.hermite = Some(symbol);
