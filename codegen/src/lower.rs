@@ -10,6 +10,7 @@ mod audit;
 mod bands;
 mod drawn;
 mod entry;
+mod facts;
 mod finish;
 mod function;
 mod fusion;
@@ -27,6 +28,7 @@ mod rule;
 mod sampled;
 mod sampling;
 mod shape;
+mod slope;
 mod symbols;
 mod table;
 mod taps;
@@ -37,11 +39,13 @@ pub use audit::{Audit, AuditedBand, AuditedOutput, Remedy, Replaced};
 pub use image::{Ensemble, Image, pairs};
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
+pub use slope::Slopes;
 pub use upstream::{Over, Upstream, Widened};
 
 use crate::ir::{Builder, Float, FunctionRef, Interface, Label, Library, Module, Port, Program};
 use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use arguments::Arguments;
+use facts::Facts;
 use mipless_graph::{
     Behaviour, Checked, Graph, InputView, Node, NodeId, NodeSpec, Picture, Reach, Source, Type,
 };
@@ -236,45 +240,6 @@ fn is_source(node: &Node) -> bool {
         behaviour,
         Behaviour::Gaussian { .. } | Behaviour::Random { .. }
     )
-}
-
-/// What is known of a graph's nodes before they are lowered.
-struct Facts {
-    /// How many live edges read each node's output.
-    live: Vec<u32>,
-    /// The live nodes in the order in which they are lowered.
-    order: Vec<u32>,
-    /// Whether components of each node's output are combined later.
-    crossed: Vec<bool>,
-    /// Whether literals alone shape each node's output.
-    literal: Vec<bool>,
-    /// The nodes that `auto` samples.
-    sampled: FxHashMap<usize, sampled::Sampling>,
-    /// The nodes that repeat, which `auto` reads from maps.
-    repeated: FxHashMap<usize, torus::Repeated>,
-    /// The nodes that `auto` draws to their means.
-    drawn: FxHashMap<usize, drawn::Drawn>,
-    /// Whether the surface's place shapes each node's output.
-    placed: Vec<bool>,
-    /// The nodes that are functions of things.
-    mixtures: mixture::Mixtures,
-}
-
-impl Facts {
-    fn of(graph: &Graph) -> Self {
-        let live = symbols::live(graph);
-        Self {
-            order: order::order(graph, &live),
-            crossed: symbols::crossed(graph),
-            literal: symbols::literal(graph),
-            sampled: FxHashMap::default(),
-            repeated: FxHashMap::default(),
-            drawn: FxHashMap::default(),
-            placed: symbols::placed(graph),
-            mixtures: mixture::Mixtures::default(),
-            live,
-        }
-    }
 }
 
 /// What all functions of a compilation share.
@@ -488,7 +453,8 @@ impl<'g, 'b> Lower<'g, 'b> {
             }
             self.is_only_measured = self.only_measured.get(index) == Some(&true);
             let forks = uses[index] > 1;
-            self.algebra.shares = forks;
+            self.algebra.shares = forks || self.algebra.derives;
+            let details = self.details.len();
             let mixed = self.mixed(index);
             let next = match &mixed {
                 Some((_, first)) => *first,
@@ -516,14 +482,23 @@ impl<'g, 'b> Lower<'g, 'b> {
                 node.spec.name
             );
             self.nonlinear |= self.algebra.bent;
+            let mut slopes = self.slopes_of(&bundle, details);
             if !is_mixed && let Some(fused) = self.fuse(index, node, &bundle) {
                 bundle = fused;
+                for (slope, signal) in slopes.iter_mut().zip(&bundle) {
+                    if let Some(own) = &signal.slope {
+                        *slope = Some(own.clone());
+                    }
+                }
             }
             if let Some(other) = self.instead(index, &bundle) {
                 bundle = other;
                 self.chains[index] = None;
                 self.pairs[index] = None;
                 self.sums[index] = None;
+            }
+            if self.algebra.derives {
+                self.put_slopes(&mut bundle, slopes);
             }
             self.carriers.born(&bundle);
             // Inputs that nothing else reads are gone: a symbol that only this signal still carries
@@ -537,11 +512,17 @@ impl<'g, 'b> Lower<'g, 'b> {
                 }
             }
             let kept = kept.unwrap_or(Symbol(u32::MAX));
-            self.carriers
-                .retire(&mut bundle, kept, self.compiler.facts.crossed[index]);
+            if !self.algebra.derives {
+                self.carriers
+                    .retire(&mut bundle, kept, self.compiler.facts.crossed[index]);
+            }
             self.name(node, &bundle);
             if forks {
                 for signal in &mut bundle {
+                    // What a linear node passes on is no fresh part of it, and has several readers now.
+                    if let Some(symbol) = self.algebra.publish(signal) {
+                        self.carriers.gained(symbol);
+                    }
                     if signal.hermite.is_none() {
                         let symbol = self.algebra.fresh_symbol();
                         signal.hermite = Some(symbol);

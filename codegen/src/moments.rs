@@ -29,6 +29,7 @@ mod position;
 mod product;
 mod selection;
 mod signal;
+mod slope;
 mod smooth;
 mod tabulated;
 mod tapped;
@@ -46,7 +47,7 @@ pub(crate) use map::{Grid, Map, SIDE};
 pub use normal::Normal;
 pub use piecewise::{Bump, Knot, Piecewise, Shape};
 pub(crate) use signal::PARTS;
-pub use signal::{Covariance, Signal, Symbol};
+pub use signal::{Covariance, Signal, Slope, Symbol};
 pub use smooth::{Exponential, Polynomial, RealPower, Reciprocal, Sine};
 pub use tabulated::Tabulated;
 pub(crate) use tabulated::{Sampled, Samples, sample_points};
@@ -97,6 +98,8 @@ pub struct Algebra<'b> {
     pub(crate) knots: u32,
     /// The period of the last transfer that bent, where it has one.
     pub(crate) period: Option<f32>,
+    /// Whether signals carry how they change with u and v.
+    pub(crate) derives: bool,
     symbols: u32,
 }
 
@@ -110,6 +113,7 @@ impl<'b> Algebra<'b> {
             bent: false,
             knots: 0,
             period: None,
+            derives: false,
             symbols: 0,
         }
     }
@@ -146,15 +150,22 @@ impl<'b> Algebra<'b> {
         if !self.mode.spreads() || x.is_certain() {
             return out;
         }
-        if !x.private.is_zero() {
-            let symbol = self.fresh_symbol();
-            out.push_shared(symbol, x.private.sqrt());
-            out.private = self.b.float(0.0);
-        }
+        self.publish(&mut out);
         if out.hermite.is_none() {
             out.hermite = Some(self.fresh_symbol());
         }
         out
+    }
+
+    /// Makes a symbol of the private variance, if there is any.
+    pub(crate) fn publish(&mut self, signal: &mut Signal<'b>) -> Option<Symbol> {
+        if signal.private.is_zero() {
+            return None;
+        }
+        let symbol = self.fresh_symbol();
+        signal.push_shared(symbol, signal.private.sqrt());
+        signal.private = self.b.float(0.0);
+        Some(symbol)
     }
 
     /// Says the period of the function that a node composed of several operations, where it has one:

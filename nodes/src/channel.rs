@@ -1,6 +1,7 @@
 //! Components of vectors: taken apart, put together, and what the slopes of a height make.
 
 mod combine;
+mod gradient;
 mod separate;
 
 room! {
@@ -16,4 +17,6 @@ room! {
     separate::separate2,
     separate::separate3,
     separate::separate4,
+    slope,
+    slopetonormal,
 }

@@ -17,6 +17,7 @@ mod remainder;
 pub(crate) mod ridge;
 pub(crate) mod source;
 pub(crate) mod spectral;
+pub(crate) mod steep;
 pub(crate) mod sum;
 pub(crate) mod things;
 mod tile;

@@ -74,6 +74,12 @@ impl<'a> Compiler<'a> {
     }
 }
 
+/// What is averaged without its derivative: closed forms know more of its slopes.
+fn unsloped(bundle: Bundle<'_>) -> Bundle<'_> {
+    let signals = bundle.into_iter();
+    signals.map(|signal| signal.with_slope(None)).collect()
+}
+
 impl<'b> Lower<'_, 'b> {
     /// Records what the node, just lowered to `closed`, is a function of; its bundle by fusion,
     /// where that is better than closing it alone.
@@ -90,7 +96,7 @@ impl<'b> Lower<'_, 'b> {
         }
         let pair = self.fuse_pair(index, node, closed);
         if pair.is_some() {
-            return pair;
+            return pair.map(unsloped);
         }
         let before = self.chain(node)?;
         let bends = before.bends + u32::from(self.algebra.bent);
@@ -122,7 +128,7 @@ impl<'b> Lower<'_, 'b> {
             Some(domain) if before.fixed => {
                 Some(self.tabulated(index, closed, node, &before, domain))
             }
-            _ if before.bends > 0 => self.tapped(index, closed, &before),
+            _ if before.bends > 0 => self.tapped(index, closed, &before).map(unsloped),
             _ => None,
         }
     }
@@ -263,6 +269,7 @@ impl<'b> Lower<'_, 'b> {
                     name.clone()
                 };
                 let key = format!("fused {index} {i}");
+                let key_of_rise = format!("{key} rise");
                 let known = compiler.tabulated.borrow().get(&key).cloned();
                 let table = known.unwrap_or_else(|| {
                     let of = (function.clone(), branch.clone(), i);
@@ -271,10 +278,58 @@ impl<'b> Lower<'_, 'b> {
                     (compiler.tabulated.borrow_mut()).insert(key, table.clone());
                     table
                 });
-                let table = table.within(signal.range);
+                let mut table = table.within(signal.range);
+                if self.algebra.derives() {
+                    let of = (&function, i, closed.len());
+                    let rise = self.rise((&key_of_rise, &name), of, (domain, periodic), &samples);
+                    table = table.with_rise(rise);
+                }
                 self.algebra.transfer(&chain.signal, &table)
             })
             .collect()
+    }
+
+    /// The derivative of a component of a fused function, as a transfer by tables of its own.
+    fn rise(
+        &mut self,
+        (key, name): (&str, &str),
+        (function, component, components): (&FunctionRef, usize, usize),
+        (domain, periodic): ([f32; 2], bool),
+        samples: &Samples,
+    ) -> Tabulated {
+        if let Some(known) = self.compiler.tabulated.borrow().get(key) {
+            return known.clone();
+        }
+        let width = domain[1] - domain[0];
+        let name = format!("{name}_rise");
+        let rise = self.function(key, |module| {
+            let b = &Builder::new(format!("{name}_of"), "How a function of one signal rises.");
+            let x = b.float_param("x");
+            let step = width * (1.0 / 4096.0);
+            let [above, below] = [step, -step].map(|by| b.call(function, x + by));
+            for (i, (above, below)) in above.into_iter().zip(below).take(components).enumerate() {
+                b.result(format!("value_{i}"), (above - below) * (0.5 / step));
+            }
+            b.finish(module)
+        });
+        let branch = Branch(self.function(&format!("{key} branch"), |module| {
+            Branch::of_numbers(module, &name, &rise, 1).0
+        }));
+        let samples = Arc::clone(samples);
+        let rises: Samples = Arc::new(LazyLock::new(Box::new(move || {
+            let width = f64::from(width);
+            samples.iter().map(|sampled| sampled.rise(width)).collect()
+        })));
+        let bounds = (domain, periodic, [f32::NEG_INFINITY, f32::INFINITY]);
+        let table = Tabulated::new(
+            self.module,
+            &name,
+            (rise, branch, component),
+            bounds,
+            &rises,
+        );
+        (self.compiler.tabulated.borrow_mut()).insert(key.to_owned(), table.clone());
+        table
     }
 }
 

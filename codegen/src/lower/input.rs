@@ -5,6 +5,7 @@ use super::{Bundle, Lower};
 use crate::ir::{Builder, Float, FunctionRef, Int, Module, Type as Kind, Vec2};
 use crate::moments::{Mode, Signal};
 use mipless_graph::{Literal, Node, NodeId, Source, Stops, Type};
+use std::rc::Rc;
 
 impl<'b> Lower<'_, 'b> {
     /// The builder of the function.
@@ -40,7 +41,20 @@ impl<'b> Lower<'_, 'b> {
 
     /// The surface's position: cell and fraction, g = A.
     pub fn surface(&self) -> Bundle<'b> {
-        self.coordinates(self.arguments.footprint)
+        let mut place = self.coordinates(self.arguments.footprint);
+        if self.algebra.derives() {
+            for (axis, coordinate) in place.iter_mut().enumerate() {
+                let along =
+                    |i: usize| Signal::constant(self.b(), if i == axis { 1.0 } else { 0.0 });
+                coordinate.slope = Some(Rc::new([0, 1].map(along)));
+            }
+        }
+        place
+    }
+
+    /// Whether how signals change with u and with v is asked for.
+    pub fn derives(&self) -> bool {
+        self.algebra.derives()
     }
 
     /// The surface's position in space: cells and fractions, g = A.

@@ -34,12 +34,16 @@ impl<'b> Lower<'_, 'b> {
         build: impl for<'c> FnOnce(&mut Lower<'_, 'c>, &[Signal<'c>], &[Scalar<'c>]) -> Signal<'c>,
     ) -> Signal<'b> {
         let plain = signals.iter().all(|(_, signal)| signal.shared.is_empty());
+        // Slopes are no parts of what a function gives.
+        let plain = plain && !self.algebra.derives();
         let mut out = if plain && self.algebra.b.library().is_some() {
             self.called(of, signals, numbers, build)
         } else {
             let signals: Vec<Signal<'b>> = signals.iter().map(|&(_, s)| s.clone()).collect();
             let numbers: Vec<Scalar<'b>> = numbers.iter().map(|&(_, v)| v).collect();
-            let shares = std::mem::replace(&mut self.algebra.shares, false);
+            // Where slopes are carried, both components share what is fresh in them.
+            let fresh = self.algebra.derives();
+            let shares = std::mem::replace(&mut self.algebra.shares, fresh);
             let out = build(self, &signals, &numbers);
             self.algebra.shares = shares;
             out

@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 
 /// A signal carries at most this many symbols; the oldest go private first, so that a graph of
 /// 10,000 nodes stays linear.
-const MOST: usize = 8;
+pub(super) const MOST: usize = 8;
 
 /// How many live edges (and outputs) read each node; 0 for a node that no output needs.
 pub(super) fn live(graph: &Graph) -> Vec<u32> {

@@ -56,19 +56,25 @@ fn nodes(dimensions: usize) -> Vec<([f32; 4], f32)> {
     all
 }
 
-/// Three radii, r² = 2x at the nodes x of Gauss–Laguerre, of six angles each: for functions of two
-/// numbers that are not near a quadratic within the spread.
+/// Four radii of six angles each, for functions of two numbers that are not near a quadratic within the
+/// spread: r² = 2x with e^{−x} at the nodes of Gauss–Legendre, so that what happens near the middle and
+/// what saturates far out count by their probability; x is scaled so that quadratics are exact. E[n_x²] of
+/// normals whose slopes have a standard deviation of 1.6 is within 0.003; at the nodes of
+/// Gauss–Laguerre it is 0.02 off with three radii, and 0.01 with five.
 fn polar() -> Vec<([f32; 4], f32)> {
-    const LAGUERRE: [(f64, f64); 3] = [
-        (0.415_774_556_783_479, 0.711_093_009_929_173),
-        (2.294_280_360_279_04, 0.278_517_733_569_241),
-        (6.289_945_082_937_48, 0.010_389_256_501_586),
+    const LEGENDRE: [(f64, f64); 4] = [
+        (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+        (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+        (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+        (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
     ];
+    let rings = LEGENDRE.map(|(share, weight)| (-(1.0 - share).ln(), weight));
+    let mean: f64 = rings.iter().map(|(x, weight)| x * weight).sum();
     let mut all = Vec::new();
-    for (x, weight) in LAGUERRE {
+    for (x, weight) in rings {
         for k in 0..6 {
             let (sine, cosine) = (std::f64::consts::FRAC_PI_3 * f64::from(k)).sin_cos();
-            let radius = (2.0 * x).sqrt();
+            let radius = (2.0 * x / mean).sqrt();
             let node = [(radius * cosine) as f32, (radius * sine) as f32, 0.0, 0.0];
             all.push((node, (weight / 6.0) as f32));
         }
@@ -130,7 +136,7 @@ impl<'b> Algebra<'b> {
         self.cubature_by(nodes, inputs, ranges, function)
     }
 
-    /// The same for two signals whose function is not near a quadratic: 18 nodes instead of 7.
+    /// The same for two signals whose function is not near a quadratic: 24 nodes instead of 7.
     pub fn fine_cubature(
         &mut self,
         inputs: &[Signal<'b>; 2],
@@ -173,6 +179,9 @@ impl<'b> Algebra<'b> {
         self.period = None;
         let spread: Vec<Signal<'b>> = uncertain.iter().map(|&i| self.expose(&inputs[i])).collect();
         let triangle = Triangle::of(&spread);
+        let plain: Vec<Signal<'b>> = (spread.iter())
+            .map(|x| x.clone().with_slope(None))
+            .collect();
         let rows: Vec<([f32; 4], f32, Vec<Float<'b>>)> = (nodes(spread.len()).into_iter())
             .map(|(z, weight)| {
                 if z == [0.0; 4] {
@@ -207,13 +216,15 @@ impl<'b> Algebra<'b> {
             }));
             // β = L⁻ᵀ a: the coefficients of the inputs themselves.
             let mut signal = Signal::constant(b, 0.0);
+            let mut lines = Vec::new();
             for j in (0..spread.len()).rev() {
                 slopes[j] *= triangle.inverses[j];
                 for i in 0..j {
                     let part = triangle.rows[j][i] * slopes[j];
                     slopes[i] -= part;
                 }
-                signal = signal + &spread[j] * slopes[j];
+                signal = signal + plain[j].scale(slopes[j]);
+                lines.push((&spread[j], slopes[j]));
             }
             signal.mean = centre[k] + mean;
             signal.range = range;
@@ -221,6 +232,9 @@ impl<'b> Algebra<'b> {
                 signal.mean = signal.mean.clamp(range[0], range[1]);
             }
             self.attach_fresh(&mut signal, distortion);
+            if self.derives() {
+                signal.slope = self.slopes_of_linear(&lines, distortion);
+            }
             out.push(signal);
         }
         out

@@ -7,7 +7,7 @@
 //! function; with them, ten-point Gauss–Legendre on each piece, and closed forms where the function
 //! is constant.
 
-use super::{Gaussian, Moments, Normal, Transfer, piecewise::probability};
+use super::{Gaussian, Moments, Normal, Transfer, normal::probability};
 use crate::ir::Float;
 
 /// A function of one number by its values.

@@ -1,6 +1,6 @@
 //! Maxima and minima of two signals (Clark 1961).
 
-use super::{Algebra, Normal, Signal, spread};
+use super::{Algebra, Normal, Piecewise, Signal, Slope, spread};
 
 impl<'b> Algebra<'b> {
     /// max(X, Y): with a = (m_X − m_Y)/θ, θ² = Var(X − Y): mean m_Y + θ(aΦ(a) + φ(a)),
@@ -10,7 +10,7 @@ impl<'b> Algebra<'b> {
         if let Some(both) = self.either(x, y) {
             return both;
         }
-        let (x, y) = (&x.flat(), &y.flat());
+        let (x, y) = (&self.held(x), &self.held(y));
         let difference = x - y;
         if !self.mode.spreads() || difference.is_certain() {
             let mean = x.mean.max(y.mean);
@@ -23,6 +23,7 @@ impl<'b> Algebra<'b> {
                     range,
                     binary: None,
                     hermite: None,
+                    slope: self.larger(x, y, &difference),
                     ..x.clone()
                 }
             };
@@ -35,7 +36,26 @@ impl<'b> Algebra<'b> {
         out.mean = y.mean + normal.hinge(difference.mean, sd);
         out.range = range;
         self.attach_fresh(&mut out, variance * normal.hinge_distortion());
+        out.slope = self.larger(x, y, &difference);
         out
+    }
+
+    /// The slopes of max(X, Y): those of X where X − Y is positive, else those of Y.
+    fn larger(
+        &mut self,
+        x: &Signal<'b>,
+        y: &Signal<'b>,
+        difference: &Signal<'b>,
+    ) -> Option<Slope<'b>> {
+        if !self.derives() {
+            return None;
+        }
+        let (p, q) = (x.slopes()?, y.slopes()?);
+        let step = Piecewise::step(self.b.float(0.0));
+        let above = self.transfer(&difference.clone().with_slope(None), &step);
+        let across = [0, 1].map(|i| &p[i] - &q[i]);
+        let one = Signal::constant(self.b, 1.0);
+        Some(self.bilinear(&[(&one, &*q), (&above, &across)]))
     }
 
     /// The maximum of two signals that take the same two values: low + (high − low)(X + Y − XY) of

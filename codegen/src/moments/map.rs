@@ -223,6 +223,10 @@ impl<'b> Algebra<'b> {
                     ..x * m.slopes[0] + y * m.slopes[1]
                 };
                 self.attach_fresh(&mut out, m.distortion);
+                if self.derives() {
+                    let lines = [(x, m.slopes[0]), (y, m.slopes[1])];
+                    out.slope = self.slopes_of_linear(&lines, m.distortion);
+                }
                 out
             })
             .collect()

@@ -75,3 +75,10 @@ impl<'b> Normal<'b> {
         d.max(0.0)
     }
 }
+
+/// The probability between two edges, from the tails of the nearer side.
+pub(super) fn probability<'b>(from: &Normal<'b>, to: &Normal<'b>) -> Float<'b> {
+    let right = (from.z + to.z).gt(0.0);
+    let p = right.select(to.above - from.above, from.below - to.below);
+    p.max(0.0)
+}

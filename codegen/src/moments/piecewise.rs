@@ -10,7 +10,7 @@ mod ramp;
 mod segment;
 mod stretch;
 
-use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer, signal::UNBOUNDED};
+use super::{Curve, Gaussian, Moments, Normal, SharedTransfer, Transfer, signal::UNBOUNDED};
 use crate::ir::{Builder, Float, Operand};
 use segment::Segment;
 use smallvec::smallvec;
@@ -18,7 +18,6 @@ use smallvec::smallvec;
 pub(super) use distortion::Residual;
 pub use ramp::Shape;
 pub use segment::Bump;
-pub(super) use segment::probability;
 
 /// Two places closer than this are one: what lies between them is a jump.
 const CLOSEST: f32 = 1e-6;
@@ -188,6 +187,13 @@ impl<'b> Piecewise<'b> {
         x
     }
 
+    /// T′(x) of a function without jumps.
+    fn steepness(&self, x: Float<'b>) -> Float<'b> {
+        let bends = self.knots.iter().map(|k| x.ge(k.at).select(k.bend, 0.0));
+        let straight = bends.fold(self.slope, |sum, bend| sum + bend);
+        (self.segments()).fold(straight, |sum, segment| sum + segment.steepness(x))
+    }
+
     fn segments(&self) -> impl Iterator<Item = Segment<'b>> {
         (self.bumps.iter().zip(self.knots.windows(2))).map(|(&bump, pair)| Segment {
             from: pair[0].at,
@@ -274,6 +280,24 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
                 })
             },
         })
+    }
+
+    fn derivative(&self) -> Option<Box<dyn Transfer<'b> + 'b>> {
+        if self.is_steep() {
+            return None;
+        }
+        if self.bumps.is_empty() {
+            let steps = self.knots.iter().map(|k| Knot::jump(k.at, k.bend));
+            let slope = Self::straight(self.slope, 0.0, steps.collect());
+            return Some(Box::new(slope));
+        }
+        let t = self.clone();
+        Some(Box::new(Curve {
+            kinks: t.knots.iter().map(|knot| knot.at).collect(),
+            flat: [Some(t.slope), t.level.then(|| t.offset.literal(0.0))],
+            range: UNBOUNDED,
+            function: move |x| t.steepness(x),
+        }))
     }
 
     fn binary(&self) -> Option<[f32; 2]> {

@@ -22,7 +22,7 @@ impl<'b> Algebra<'b> {
             return x * y.flat_mean();
         }
         self.bent = true;
-        let (x, y) = (&x.flat(), &y.flat());
+        let (x, y) = (&self.held(x), &self.held(y));
         let second = self.mode == Mode::Quad;
         let of = SharedFunction {
             name: "product",
@@ -52,7 +52,18 @@ impl<'b> Algebra<'b> {
         out.range = x.range_of_product(y);
         out.binary = product_binary(x, y);
         self.attach_fresh(&mut out, remainder);
+        if let (true, Some(p), Some(q)) = (self.derives(), x.slopes(), y.slopes()) {
+            out.slope = Some(self.bilinear(&[(y, &p), (x, &q)]));
+        }
         out
+    }
+
+    /// The signal with its mean as one number; where its slopes are to meet it again, exposed.
+    pub(super) fn held(&mut self, x: &Signal<'b>) -> Signal<'b> {
+        if self.derives() && x.slope.is_some() {
+            return self.expose(&x.flat());
+        }
+        x.flat()
     }
 
     /// `X + M (Y − X)`: the product rule for M (Y − X) with all that it shares with X, whose private
@@ -68,7 +79,7 @@ impl<'b> Algebra<'b> {
             };
         }
         self.bent = true;
-        let (x, y, mask) = (&x.flat(), &y.flat(), &mask.flat());
+        let (x, y, mask) = (&self.held(x), &self.held(y), &self.held(mask));
 
         // Of each symbol: the coefficients of X, of Y − X and of M.
         let symbols = symbols_of(&[x, y, mask]);
@@ -111,6 +122,15 @@ impl<'b> Algebra<'b> {
             out.range = [x.range[0].min(y.range[0]), x.range[1].max(y.range[1])];
         }
         self.attach_fresh(&mut out, remainder);
+        if let (true, Some(p), Some(q), Some(r)) =
+            (self.derives(), x.slopes(), y.slopes(), mask.slopes())
+        {
+            let across = y - x;
+            let difference = [0, 1].map(|i| &q[i] - &p[i]);
+            let one = Signal::constant(self.b, 1.0);
+            let terms = [(&one, &*p), (mask, &difference), (&across, &*r)];
+            out.slope = Some(self.bilinear(&terms));
+        }
         out
     }
 }

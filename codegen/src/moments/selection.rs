@@ -14,9 +14,11 @@
 //! Σ P_k Var(W⊥_k − Σ_j P_j W⊥_j), since the indicators exclude one another. Exact in mean, variance
 //! and covariances for jointly Gaussian signals.
 
-use super::piecewise::{Residual, probability};
-use super::{Algebra, Normal, Piecewise, Signal, spread};
+use super::normal::probability;
+use super::piecewise::Residual;
+use super::{Algebra, Normal, Piecewise, Signal, Slope, spread};
 use crate::ir::{Float, dot};
+use std::rc::Rc;
 
 /// The probability of an interval, and ∫ zφ and ∫ z²φ over it.
 struct Interval<'b> {
@@ -125,7 +127,36 @@ impl<'b> Algebra<'b> {
             _ => None,
         };
         self.attach_fresh(&mut out, distortion);
+        out.slope = self.chosen(s, thresholds, &signals);
         out
+    }
+
+    /// The slopes of Σ_k 1_k(S) W_k = W₀ + Σ_k (S ≥ t_k)(W_k − W_{k−1}): those of the branches where they
+    /// are taken, and a lower bound of those of the jumps.
+    fn chosen(
+        &mut self,
+        s: &Signal<'b>,
+        thresholds: &[f32],
+        branches: &[Signal<'b>],
+    ) -> Option<Slope<'b>> {
+        if !self.derives() {
+            return None;
+        }
+        let of_s = s.slopes()?;
+        let slopes: Option<Vec<Slope<'b>>> = branches.iter().map(Signal::slopes).collect();
+        let slopes = slopes?;
+        let s = s.clone().with_slope(None);
+        let mut out: Slope<'b> = slopes[0].clone();
+        for (k, &threshold) in thresholds.iter().enumerate() {
+            let step = Piecewise::step(self.b.float(threshold));
+            let taken = self.transfer(&s, &step);
+            let jump = branches[k + 1].mean - branches[k].mean;
+            let edge = self.derivative(&s, &step) * jump;
+            let across = [0, 1].map(|i| &slopes[k + 1][i] - &slopes[k][i]);
+            let part = self.bilinear(&[(&taken, &across), (&edge, &of_s)]);
+            out = Rc::new([0, 1].map(|i| &out[i] + &part[i]));
+        }
+        Some(out)
     }
 
     /// Of a condition that takes two values: every indicator is linear in it.

@@ -1,9 +1,14 @@
 //! A scalar signal with its first two moments in factored form, and the linear rules.
 
+mod slope;
+
 use super::position;
 use crate::ir::{Bool, Builder, Float, Int, Operand, Sym2, Vec2};
 use smallvec::SmallVec;
 use std::ops::{Add, Mul, Neg, Sub};
+
+pub use slope::Slope;
+use slope::combined;
 
 /// A unit-variance symbol ε that several signals share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -31,6 +36,8 @@ pub struct Signal<'b> {
     pub binary: Option<[Float<'b>; 2]>,
     /// The symbol of this signal's second Hermite polynomial, where several transfers read it.
     pub hermite: Option<Symbol>,
+    /// How the signal changes with u and with v, where that is carried and known.
+    pub slope: Option<Slope<'b>>,
 }
 
 impl Clone for Signal<'_> {
@@ -38,6 +45,7 @@ impl Clone for Signal<'_> {
         Self {
             // Copied as a whole: one by one takes as long as all the rest.
             shared: SmallVec::from_slice(&self.shared),
+            slope: self.slope.clone(),
             ..*self
         }
     }
@@ -75,6 +83,7 @@ impl<'b> Signal<'b> {
             range,
             binary: None,
             hermite: None,
+            slope: None,
         }
     }
 
@@ -228,6 +237,7 @@ impl<'b> Signal<'b> {
             },
             binary: self.binary.map(|values| values.map(|v| v * by)),
             hermite: None,
+            slope: self.map_slope(|slope| slope.scale(by)),
         }
     }
 
@@ -281,6 +291,7 @@ impl<'b> Signal<'b> {
             range: [x.range[0].min(y.range[0]), x.range[1].max(y.range[1])],
             binary: None,
             hermite: None,
+            slope: combined(&x, &y, |p, q| p.select(condition, q)),
         }
     }
 
@@ -371,6 +382,7 @@ impl<'b> Add for &Signal<'b> {
             ],
             binary,
             hermite: None,
+            slope: combined(self, other, |p, q| p + q),
         }
     }
 }

@@ -27,6 +27,12 @@ impl Sine {
 }
 
 impl<'b> Transfer<'b> for Sine {
+    fn derivative(&self) -> Option<Box<dyn Transfer<'b> + 'b>> {
+        Some(Box::new(Self {
+            phase: self.phase + std::f32::consts::FRAC_PI_2,
+        }))
+    }
+
     fn value(&self, x: Float<'b>) -> Float<'b> {
         self.pair(x)[0]
     }
@@ -78,6 +84,10 @@ impl<'b> Transfer<'b> for Sine {
 pub struct Exponential;
 
 impl<'b> Transfer<'b> for Exponential {
+    fn derivative(&self) -> Option<Box<dyn Transfer<'b> + 'b>> {
+        Some(Box::new(Self))
+    }
+
     fn value(&self, x: Float<'b>) -> Float<'b> {
         x.clamp(-80.0, 80.0).exp()
     }

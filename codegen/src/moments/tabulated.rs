@@ -50,6 +50,19 @@ impl Sampled {
         Self { mips, periodic }
     }
 
+    /// The derivative of the function over a domain of this width, which beyond it is 0.
+    pub(crate) fn rise(&self, width: f64) -> Self {
+        let by = 0.5 * SAMPLES as f64 / width;
+        let mut rises: Vec<f64> = (0..SAMPLES as i64)
+            .map(|i| (self.sample(0, i + 1) - self.sample(0, i - 1)) * by)
+            .collect();
+        if !self.periodic {
+            rises[0] = 0.0;
+            rises[SAMPLES - 1] = 0.0;
+        }
+        Self::new(rises, self.periodic)
+    }
+
     /// Sample i of a mip, which may lie beyond the domain: there the function keeps its last value,
     /// not that of the last average.
     fn sample(&self, mip: usize, i: i64) -> f64 {
@@ -231,6 +244,8 @@ pub struct Tabulated {
     periodic: bool,
     range: [f32; 2],
     tables: [u32; 5],
+    /// Its derivative, where slopes are asked for.
+    rise: Option<Arc<Tabulated>>,
 }
 
 impl Tabulated {
@@ -258,6 +273,15 @@ impl Tabulated {
             periodic,
             range,
             tables,
+            rise: None,
+        }
+    }
+
+    /// The same with its derivative.
+    pub(crate) fn with_rise(self, rise: Self) -> Self {
+        Self {
+            rise: Some(Arc::new(rise)),
+            ..self
         }
     }
 
@@ -365,6 +389,11 @@ impl<'b> Transfer<'b> for Tabulated {
 
     fn range(&self, _: [f32; 2]) -> [f32; 2] {
         self.range
+    }
+
+    fn derivative(&self) -> Option<Box<dyn Transfer<'b> + 'b>> {
+        let rise = self.rise.as_ref()?;
+        Some(Box::new(Self::clone(rise)))
     }
 
     fn period(&self) -> Option<f32> {

@@ -82,6 +82,10 @@ pub trait Transfer<'b> {
     fn shared(&self, _range: [f32; 2]) -> Option<SharedTransfer<'b>> {
         None
     }
+    /// T′, where it is a function whose moments are known as well; what jumps has none.
+    fn derivative(&self) -> Option<Box<dyn Transfer<'b> + 'b>> {
+        None
+    }
     /// The least and largest value on `[low, high]` (which may be infinite).
     fn range(&self, input: [f32; 2]) -> [f32; 2];
 }
@@ -134,6 +138,15 @@ impl<'b> Algebra<'b> {
         if let Some(values) = x.binary {
             return between(x, t, values);
         }
+        let exposed;
+        let mut x = x;
+        let mut steepness = None;
+        if self.derives() && x.slope.is_some() {
+            // What T(X) and T′(X) have in common.
+            exposed = self.expose(x);
+            x = &exposed;
+            steepness = Some(self.derivative(x, t));
+        }
         let carries = self.mode == Mode::Quad;
         let shared = t.shared(x.range);
         // The mean can leave the range by the third cumulant alone.
@@ -183,6 +196,9 @@ impl<'b> Algebra<'b> {
             out.push_shared(symbol, hermite);
         }
         self.attach_fresh(&mut out, distortion);
+        if let (Some(steepness), Some(slope)) = (steepness, &x.slope) {
+            out.slope = Some(self.bilinear(&[(&steepness, slope)]));
+        }
         out
     }
 }

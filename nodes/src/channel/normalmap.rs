@@ -22,7 +22,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             texture has no surface; and it takes in = 0 for a missing map.",
         statistics: "As `normalize`: a cubature of degree 5 over the joint Gaussian of the inputs, with \
             positive weights: mean, the slopes by each input, and the rest as a sum of squares. A \
-            scale that varies is one of them. The mean is shorter than 1 by what the normals of a \
+            scale that varies is one of them. Where E|n|² is within 0.02 of 1 (and `scale` is 1) the vectors are \
+            taken for unit normals, as those of a normal map are, and the result is the vectors \
+            themselves over its root: means, variances and covariances of a map are exact; up to \
+            0.06 both are mixed. The mean is shorter than 1 by what the normals of a \
             footprint differ.",
         accuracy: "For Gaussian inputs of standard deviations up to 0.1 around a normal the mean is within \
             1e-3 and the standard deviation within 6e-3; up to 0.2, within 0.02 and 0.04. Normals of \
@@ -76,11 +79,42 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         [x, y] => vec![x.clone(), y.clone(), Signal::constant(lower.b(), 1.0)],
         more => more[..3].to_vec(),
     };
+    let plain = scale.is_certain() && scale.mean.as_constant() == Some(1.0);
     inputs.push(scale);
     let ranges = [[-1.0, 1.0]; 3];
-    lower.algebra.cubature(&inputs, &ranges, |v| {
+    if plain && lower.mode().spreads() {
+        let exposed = inputs.iter().map(|x| lower.algebra.expose(x));
+        inputs = exposed.collect();
+    }
+    let normals = lower.algebra.cubature(&inputs, &ranges, |v| {
         let scale = v[3];
         let [x, y, z] = [v[0], v[1], v[2]].map(|x| x + x + -1.0);
         unit(&[x * scale, y * scale, z])
-    })
+    });
+    if plain && lower.mode().spreads() {
+        return decoded(&inputs[..3], &normals);
+    }
+    normals
+}
+
+/// Where E|n|² is this close to 1, vectors are taken for unit normals, and farther away for any.
+const UNIT: [f32; 2] = [0.02, 0.06];
+
+/// The vectors themselves, over the root of E|n|², where that says that they are unit normals, as those
+/// of a normal map are, whatever their spread: a Gaussian of the same moments is not of one length, and
+/// its directions are others. Else the normals of the Gaussian.
+fn decoded<'b>(color: &[Signal<'b>], normals: &[Signal<'b>]) -> Bundle<'b> {
+    let b = color[0].mean.builder();
+    let vectors: Vec<Signal<'b>> = color
+        .iter()
+        .map(|x| (x * 2.0).offset(-1.0).flat())
+        .collect();
+    let squares = vectors.iter().map(|x| x.mean.square() + x.variance());
+    let square = b.sum(squares);
+    let [near, far] = UNIT;
+    let share = ((far - (square - 1.0).abs()) * (1.0 / (far - near))).clamp(0.0, 1.0);
+    let by = share / square.max(0.5).sqrt();
+    (vectors.iter().zip(normals))
+        .map(|(vector, normal)| (vector * by + normal * (1.0 - share)).with_range([-1.0, 1.0]))
+        .collect()
 }

@@ -15,6 +15,7 @@
 
 mod energy;
 mod impulse;
+mod steep;
 
 use super::bend::localized;
 use super::cell::lattice_seed;
@@ -28,6 +29,8 @@ use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Sym2, Vec2, dot};
 use mipless_codegen::moments::{Mode, Signal};
 use std::f32::consts::{PI, TAU};
+
+pub(crate) use steep::steepness;
 
 /// The radius of a kernel, in standard deviations of its envelope: e^{−4.5} of the amplitude is left
 /// there, and e^{−9} of the energy beyond.

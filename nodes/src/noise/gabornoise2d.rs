@@ -160,5 +160,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = cells(lower, node, gabor);
     let orientation = orientation(lower, node);
     let fields = gabor::filtered(lower, &position, gabor, orientation, false);
-    shaped(lower, node, &fields[0], 1.0, &position)
+    shaped(lower, node, &fields[0], &position, |lower| {
+        gabor::steepness(lower, &position, gabor, orientation)
+    })
 }

@@ -4,6 +4,7 @@ use super::affine::Affine;
 use super::field::Spread;
 use super::lattice::{self, WAVELENGTH};
 use super::perlin::{self, Kind};
+use super::steep::{self, Band};
 use super::sum::Octaves;
 use mipless_codegen::ir::Scalar;
 use mipless_codegen::moments::Signal;
@@ -78,8 +79,30 @@ impl Kernel {
                 Self::Gaussian => lattice::filtered(lower, position, octaves, seed),
                 Self::Quintic(kind) => perlin::filtered(lower, position, kind, octaves, seed),
             };
-            (field.at(lower, position) * amplitude).offset(pivot)
+            let steep = field.steep(lower, position, |lower| {
+                let spread = Spread::of(position);
+                steep::of_bands(lower, &spread, &self.bands(octaves))
+            });
+            (steep * amplitude).offset(pivot)
         })
+    }
+
+    /// The spectrum of a sum of octaves, in cells of the first, which has variance 1.
+    fn bands(self, octaves: Octaves) -> Vec<Band> {
+        let (order, area) = match self {
+            Self::Gaussian => (2, lattice::AREA),
+            Self::Quintic(kind) => kind.band(),
+        };
+        let shares = (0..octaves.count).map(|_| 1.0);
+        let shares = shares.chain((octaves.part > 0.0).then_some(octaves.part));
+        (0..)
+            .zip(shares)
+            .map(|(k, share): (i32, f32)| Band {
+                order,
+                area: area / octaves.lacunarity.powi(2 * k),
+                variance: (share * octaves.diminish.powi(k)).powi(2),
+            })
+            .collect()
     }
 
     /// Reports what the footprint is to a sum of octaves at this position, in cells of the first

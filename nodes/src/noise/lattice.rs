@@ -17,8 +17,8 @@ use super::sum::{Left, Octaves};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Float, Uint};
 use mipless_codegen::moments::{Mode, Signal};
-pub(super) use width::WAVELENGTH;
 use width::WIDTH;
+pub(super) use width::{AREA, WAVELENGTH};
 
 impl Octaves {
     /// How many octaves the footprint leaves, at most, and the variance of the others. Each is

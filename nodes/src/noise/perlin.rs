@@ -97,6 +97,16 @@ impl Kind {
         }
     }
 
+    /// The order and the area of the band that has the slopes of its spectrum: E|∂|² = 3.6464 a cell²
+    /// of values and 8.384 of gradients, from ∫ w′² and ∫ ((t w)′)²; what any round filter removes of
+    /// them is within 1.3 % of all.
+    pub(super) const fn band(self) -> (u32, f32) {
+        match self {
+            Self::Gradient => (1, 0.119_27),
+            Self::Value => (0, 0.137_12),
+        }
+    }
+
     /// The name of its rule.
     pub(crate) const fn rule(self) -> &'static str {
         match self {

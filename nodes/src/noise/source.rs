@@ -6,6 +6,7 @@ use super::kernel::Kernel;
 use super::sum::Octaves;
 use crate::port;
 use mipless_codegen::Lower;
+use mipless_codegen::ir::Sym2;
 use mipless_codegen::moments::Signal;
 use mipless_graph::{Behaviour, Default, InputView, Node, PortSpec, PortType, Range, Reach, Type};
 
@@ -154,16 +155,17 @@ pub(crate) fn octaves_of<'b>(
     vec![signal.with_range(range)]
 }
 
-/// The field of this standard deviation as a signal: pivot + amplitude/4 · X.
+/// The field of variance 1, and the covariance of the slopes that the filter removed, as the node's
+/// output: pivot + amplitude/4 · X.
 pub(crate) fn shaped<'b>(
     lower: &mut Lower<'_, 'b>,
     node: &Node,
     field: &Field<'b>,
-    sd: f32,
     position: &[Signal<'b>],
+    rest: impl FnOnce(&mut Lower<'_, 'b>) -> Sym2<'b>,
 ) -> Vec<Signal<'b>> {
-    let unit = field.at(lower, position);
-    scaled(lower, node, unit, (0.25, EXTENT * sd))
+    let unit = field.steep(lower, position, rest);
+    scaled(lower, node, unit, (0.25, EXTENT))
 }
 
 /// A noise X of variance 1 as the node's output: pivot + amplitude · `factor` · X, with |X| at most

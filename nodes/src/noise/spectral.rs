@@ -4,8 +4,10 @@
 //! the ensemble variance of its k-th derivative term is a²/2 · e^{−q} qᵏ/k! (MATH §1). Wave vectors
 //! are multiples of 1/1024 of a period, so that whole cells change phases by exact integers.
 
+mod steep;
 mod waves;
 
+pub(crate) use steep::steepness;
 pub(crate) use waves::{Density, FARTHEST, Spectrum};
 
 use super::bend::localized;

@@ -127,5 +127,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     };
     let position = position(lower, node);
     let field = spectral::filtered(lower, &position, &spectrum);
-    shaped(lower, node, &field, 1.0, &position)
+    shaped(lower, node, &field, &position, |lower| {
+        spectral::steepness(lower, &position, &spectrum)
+    })
 }

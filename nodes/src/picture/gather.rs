@@ -95,6 +95,7 @@ impl<'a, 'b> Reading<'a, 'b> {
         };
         let [x, y] = [x, y].map(|axis| Signal {
             cell: None,
+            slope: None,
             ..axis.clone()
         });
         let [w, h] = self.pyramid.texels();

@@ -3,12 +3,8 @@
 //! D = Σ_j ∫_j (T(x) − E[T] − α(x − m))² over the Gaussian: each piece contributes a non-negative
 //! part, so nothing cancels (RULES, transfers: √D within 3e-5 in f32).
 
-use super::super::{Gaussian, Normal, curve::TEN};
-use super::{
-    CLOSEST, Knot, Piecewise,
-    segment::{Bump, probability},
-    stretch::Lines,
-};
+use super::super::{Gaussian, Normal, curve::TEN, normal::probability};
+use super::{CLOSEST, Knot, Piecewise, segment::Bump, stretch::Lines};
 use crate::ir::Float;
 
 /// Nodes and weights of Gauss–Legendre on [0, 1], degree 5.

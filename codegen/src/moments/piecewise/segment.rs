@@ -2,7 +2,7 @@
 //! much the slopes at its ends, in units of the segment, differ from the straight one's. A smooth
 //! step of height Δ is p = q = −Δ; p = −q is a parabola.
 
-use super::super::{Gaussian, Normal};
+use super::super::{Gaussian, Normal, normal::probability};
 use super::CLOSEST;
 use crate::ir::{Float, dot};
 
@@ -28,6 +28,13 @@ impl<'b> Bump<'b> {
     pub(super) fn at(self, t: Float<'b>) -> Float<'b> {
         let back = 1.0 - t;
         t * back * (self.start * back - self.end * t)
+    }
+
+    /// Its derivative by τ.
+    fn steepness(self, t: Float<'b>) -> Float<'b> {
+        let back = 1.0 - t;
+        let both = 2.0 * (t * back);
+        self.start * (back.square() - both) - self.end * (both - t.square())
     }
 
     /// Whether it is the constant 0.
@@ -64,6 +71,14 @@ impl<'b> Segment<'b> {
     pub(super) fn value(&self, x: Float<'b>) -> Float<'b> {
         let t = (x - self.from) * self.inverse_width();
         self.bump.at(t.clamp(0.0, 1.0))
+    }
+
+    /// The bump's derivative at x.
+    pub(super) fn steepness(&self, x: Float<'b>) -> Float<'b> {
+        let inverse = self.inverse_width();
+        let t = (x - self.from) * inverse;
+        let inside = t.ge(0.0).select(t.le(1.0).select(inverse, 0.0), 0.0);
+        self.bump.steepness(t.clamp(0.0, 1.0)) * inside
     }
 
     /// The mean of the bump and its three derivatives by m; its distortion is not its own but the
@@ -153,11 +168,4 @@ fn quadrature<'b>(bump: Bump<'b>, m: Float<'b>, inverse: Float<'b>) -> [Float<'b
         curvature * inverse2,
         third * (inverse2 * inverse),
     ]
-}
-
-/// The probability between two knots, from the tails of the nearer side.
-pub(in super::super) fn probability<'b>(from: &Normal<'b>, to: &Normal<'b>) -> Float<'b> {
-    let right = (from.z + to.z).gt(0.0);
-    let p = right.select(to.above - from.above, from.below - to.below);
-    p.max(0.0)
 }

@@ -1,8 +1,8 @@
 //! The straight lines of a piecewise function, each from a knot of its own: sums over slopes and knots
 //! would be differences of numbers that are as large as σ, where a stretch is as short as one likes.
 
-use super::super::{Gaussian, Normal};
-use super::{Knot, Piecewise, probability};
+use super::super::{Gaussian, Normal, normal::probability};
+use super::{Knot, Piecewise};
 use crate::ir::Float;
 
 /// Below this width in σ an integral over a stretch is its ends' mean, corrected by Euler and Maclaurin:

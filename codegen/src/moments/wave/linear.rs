@@ -186,6 +186,22 @@ impl Series {
 }
 
 impl<'b> Transfer<'b> for LinearWave {
+    fn derivative(&self) -> Option<Box<dyn Transfer<'b> + 'b>> {
+        if self
+            .corners
+            .iter()
+            .any(|corner| corner.before != corner.after)
+        {
+            return None;
+        }
+        let steps = (0..).zip(&self.corners).map(|(i, corner)| Corner {
+            at: corner.at,
+            before: self.slope(i - 1),
+            after: self.slope(i),
+        });
+        Some(Box::new(Self::new(steps.collect())))
+    }
+
     fn value(&self, x: Float<'b>) -> Float<'b> {
         // A corner at 0 is where the line starts.
         let piece = self.unrolled(x.builder(), 0.0, 1.0);

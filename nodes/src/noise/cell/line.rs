@@ -191,6 +191,7 @@ pub(crate) fn filtered<'b>(
             Signal {
                 mean,
                 cell: None,
+                slope: None,
                 ..signal + place * responses[i]
             }
         })

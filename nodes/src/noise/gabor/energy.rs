@@ -6,7 +6,7 @@ use std::f32::consts::PI;
 
 /// Directions with weights, as angles from the orientation: one for a single direction, the
 /// trapezoid rule for all of them, the rule of Gauss and Legendre between.
-fn directions(anisotropy: f32) -> Vec<[f32; 2]> {
+pub(super) fn directions(anisotropy: f32) -> Vec<[f32; 2]> {
     let half = 0.5 * PI * (1.0 - anisotropy);
     if anisotropy >= 1.0 {
         return vec![[0.0, 1.0]];
@@ -71,7 +71,7 @@ pub(super) fn energies<'b>(
 }
 
 /// The product of two matrices that commute.
-fn product<'b>(m: Sym2<'b>, n: Sym2<'b>) -> Sym2<'b> {
+pub(super) fn product<'b>(m: Sym2<'b>, n: Sym2<'b>) -> Sym2<'b> {
     Sym2([
         dot([m[0], m[1]], [n[0], n[1]]),
         dot([m[0], m[1]], [n[1], n[2]]),
