@@ -80,6 +80,7 @@ impl fmt::Display for Replacements<'_> {
             let how = match replaced.remedy {
                 Remedy::Sampled => "is averaged over 7 points inside the footprint",
                 Remedy::Repeated => "repeats, and is read from a map of its period",
+                Remedy::Drawn => "is drawn to the mean of the texture",
             };
             write!(f, "  {} ({}) {how}", node.name, node.spec.name)?;
             match replaced.sizes {
@@ -150,6 +151,7 @@ fn audit_json(path: &Path, texture: &Texture, audit: &Audit, measure: bool) -> V
         let remedy = match replaced.remedy {
             Remedy::Sampled => "sampled",
             Remedy::Repeated => "repeated",
+            Remedy::Drawn => "drawn",
         };
         let [low, high] = replaced.sizes;
         json!({

@@ -1,9 +1,11 @@
 //! Reading graphs from files.
 
+use crate::importing;
 use crate::mistake::{Mistake, Status};
 use crate::report::Report;
 use mipless::{Diagnostic, Files, Folder, Method, Texture, name_of_file};
 use mipless_graph::CheckOptions;
+use mipless_import::{Format, Imported};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -24,10 +26,36 @@ pub(crate) fn load(
     options: &CheckOptions,
     report: &mut Report,
 ) -> Result<Texture, Mistake> {
-    let text = read(path)?;
-    let texture = parse(path, &text, options, report)?;
+    let graph = graph(path, report)?;
+    let texture = parse(path, &graph, options, report)?;
     warn(path, &texture, report);
     Ok(texture)
+}
+
+/// The text of a graph, and where it comes from if another tool wrote it.
+#[derive(Debug)]
+pub(crate) struct Written {
+    pub(crate) text: String,
+    pub(crate) imported: Option<Imported>,
+}
+
+/// Reads a file as the text of a graph; a document of another tool is converted on the way.
+pub(crate) fn graph(path: &Path, report: &mut Report) -> Result<Written, Mistake> {
+    let text = read(path)?;
+    match Format::of(path) {
+        Some(format) => {
+            let files = files(path, report)?;
+            let (text, imported) = importing::graph(format, path, &text, &*files, report)?;
+            Ok(Written {
+                text,
+                imported: Some(imported),
+            })
+        }
+        None => Ok(Written {
+            text,
+            imported: None,
+        }),
+    }
 }
 
 /// Says the warnings of a graph.
@@ -46,23 +74,48 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Checks the text of a graph.
+/// Checks the text of a graph; mistakes stand where its author wrote what they are about.
 pub(crate) fn parse(
     path: &Path,
-    text: &str,
+    graph: &Written,
     options: &CheckOptions,
     report: &Report,
 ) -> Result<Texture, Mistake> {
+    let files = files(path, report)?;
+    let name = name_of_file(path);
+    let checked = Texture::with_name(&name, &graph.text, options, &*files);
+    let fixed = graph.imported.as_ref().filter(|_| checked.is_err());
+    if let Some(document) = fixed.and_then(Imported::without_inputs)
+        && let Ok(texture) = Texture::with_name(&name, &document.to_text(), options, &*files)
+    {
+        report.note(format_args!(
+            "{}: the inputs are written as the numbers that they hold, since not all that they may \
+             be is a texture",
+            path.display()
+        ));
+        return Ok(texture);
+    }
+    checked.map_err(|diagnostics| {
+        let located = match &graph.imported {
+            Some(imported) => (diagnostics.into_iter())
+                .map(|diagnostic| imported.located(diagnostic).diagnostic)
+                .collect(),
+            None => diagnostics,
+        };
+        Mistake::graph(path, located)
+    })
+}
+
+/// The files that a graph names, or a document includes.
+pub(crate) fn files(path: &Path, report: &Report) -> Result<Box<dyn Files>, Mistake> {
     let folder = Folder(folder_of(path).to_path_buf());
-    let files: Box<dyn Files> = match report.root() {
+    Ok(match report.root() {
         Some(root) => Box::new(folder.within(root).map_err(|error| {
             let message = format!("`--root {}`: {error}", root.display());
             Mistake::usage("usage", message).help("name a folder that exists")
         })?),
         None => Box::new(folder),
-    };
-    Texture::with_name(&name_of_file(path), text, options, &*files)
-        .map_err(|diagnostics| Mistake::graph(path, diagnostics))
+    })
 }
 
 /// Reads a text; `-` is standard input.

@@ -8,6 +8,9 @@ mod check;
 mod compare;
 mod compile;
 mod completions;
+mod foreign;
+mod import;
+mod importing;
 mod load;
 mod mistake;
 mod new;
@@ -48,6 +51,9 @@ struct Cli {
     #[arg(long, global = true, value_name = "DIR")]
     root: Option<PathBuf>,
 
+    #[command(flatten)]
+    importing: foreign::Arguments,
+
     #[command(subcommand)]
     verb: Verb,
 }
@@ -64,6 +70,8 @@ enum Verb {
     Compile(compile::Arguments),
     /// Measure error against cost for every method on a graph
     Trade(trade::Arguments),
+    /// Read a document of another tool (.mtlx, .ptex, .gltf) and write it as a graph
+    Import(import::Arguments),
     /// List the catalogue of nodes, or show the page of one
     Nodes(nodes::Arguments),
     /// Write a small commented graph to start from
@@ -79,13 +87,14 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return report::usage(&error),
     };
-    let mut report = Report::new(cli.json, cli.root);
+    let mut report = Report::new(cli.json, cli.root, cli.importing);
     let result = match &cli.verb {
         Verb::Render(arguments) => render::run(arguments, &mut report),
         Verb::Compare(arguments) => compare::run(arguments, &mut report),
         Verb::Check(arguments) => check::run(arguments, &mut report),
         Verb::Compile(arguments) => compile::run(arguments, &mut report),
         Verb::Trade(arguments) => trade::run(arguments, &mut report),
+        Verb::Import(arguments) => import::run(arguments, &mut report),
         Verb::Nodes(arguments) => nodes::run(arguments, &mut report),
         Verb::New(arguments) => new::run(arguments, &mut report),
         Verb::Schema => schema::run(&mut report),

@@ -147,8 +147,8 @@ impl Arguments {
             self.guard(&scene)?;
             return Ok((scene, None));
         };
-        let text = load::read(&self.scene.graph)?;
-        let checked = load::parse(&self.scene.graph, &text, &CheckOptions::default(), report);
+        let graph = load::graph(&self.scene.graph, report)?;
+        let checked = load::parse(&self.scene.graph, &graph, &CheckOptions::default(), report);
         // What has no statistics can still be sampled, if that is good or cheap enough.
         let (texture, filters) = match checked {
             Ok(texture) => (texture, true),
@@ -156,7 +156,7 @@ impl Arguments {
                 let options = CheckOptions {
                     allow_sampling: true,
                 };
-                let sampled = load::parse(&self.scene.graph, &text, &options, report);
+                let sampled = load::parse(&self.scene.graph, &graph, &options, report);
                 (sampled.map_err(|_| mistake)?, false)
             }
         };

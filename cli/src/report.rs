@@ -4,6 +4,7 @@
 //! output. With `--json`, standard output gets one object in the end, and standard error nothing.
 //! A reader that closes either of them early is no mistake.
 
+use crate::foreign::Arguments as Importing;
 use crate::mistake::{Mistake, Status};
 use mipless::Diagnostic;
 use serde_json::{Map, Value, json};
@@ -17,17 +18,20 @@ use std::process::ExitCode;
 pub(crate) struct Report {
     json: bool,
     root: Option<PathBuf>,
+    importing: Importing,
     status: Status,
     diagnostics: Vec<Value>,
     results: Map<String, Value>,
 }
 
 impl Report {
-    /// Nothing said yet, of a run whose graphs name no files outside of `root`.
-    pub(crate) fn new(json: bool, root: Option<PathBuf>) -> Self {
+    /// Nothing said yet, of a run whose graphs name no files outside of `root`, and which reads
+    /// documents of other tools as `importing` says.
+    pub(crate) fn new(json: bool, root: Option<PathBuf>, importing: Importing) -> Self {
         Self {
             json,
             root,
+            importing,
             status: Status::Done,
             diagnostics: Vec::new(),
             results: Map::new(),
@@ -37,6 +41,11 @@ impl Report {
     /// The folder outside of which no picture is read.
     pub(crate) fn root(&self) -> Option<&Path> {
         self.root.as_deref()
+    }
+
+    /// How documents of other tools are read.
+    pub(crate) fn importing(&self) -> &Importing {
+        &self.importing
     }
 
     /// Whether tools listen.
@@ -147,7 +156,7 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     if wants_json && error.use_stderr() {
         let rendered = error.render().to_string();
         let message = rendered.trim().trim_start_matches("error: ");
-        let mut report = Report::new(true, None);
+        let mut report = Report::new(true, None, Importing::default());
         report
             .diagnostics
             .push(json!(Diagnostic::error("usage", message)));

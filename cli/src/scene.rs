@@ -132,7 +132,7 @@ impl Arguments {
     /// A scene of a graph that is already loaded.
     pub(crate) fn scene(&self, texture: Texture, default: Size) -> Result<Scene, Mistake> {
         let parameters = settings(&texture, &self.settings)?;
-        let output = output(&texture, self.output.as_deref())?;
+        let output = output(&texture, self.shown(&texture))?;
         let view = match self.view {
             ViewName::Plane => View::default(),
             ViewName::Flat => {
@@ -154,6 +154,29 @@ impl Arguments {
             device,
             falls_back: self.device == DeviceName::Auto,
         })
+    }
+}
+
+impl Arguments {
+    /// The output that is asked for: of a material that another tool wrote its colour, where nothing
+    /// else is named.
+    fn shown(&self, texture: &Texture) -> Option<&str> {
+        const COLORS: [&str; 5] = [
+            "base_color",
+            "albedo",
+            "diffuseColor",
+            "emission_color",
+            "out",
+        ];
+        let is_foreign = mipless_import::Format::of(&self.graph).is_some();
+        let several = texture.outputs().len() > 1;
+        let color = || {
+            let has = |name: &&&str| texture.outputs().iter().any(|output| output.name == **name);
+            COLORS.iter().find(has).copied()
+        };
+        self.output
+            .as_deref()
+            .or_else(|| if is_foreign && several { color() } else { None })
     }
 }
 

@@ -15,6 +15,7 @@ pub mod target;
 pub mod wgsl;
 
 pub use lower::{
-    Audit, AuditedBand, AuditedOutput, Bundle, Lower, Method, NodeDef, NodeRule, Options, Over,
-    ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Upstream, Widened, audit, compile,
+    Audit, AuditedBand, AuditedOutput, Bundle, Ensemble, Image, Lower, Method, NodeDef, NodeRule,
+    Options, Over, ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Upstream, Widened,
+    audit, compile, pairs,
 };

@@ -8,13 +8,17 @@ mod ahead;
 mod arguments;
 mod audit;
 mod bands;
+mod drawn;
 mod entry;
 mod finish;
 mod function;
 mod fusion;
+mod image;
 mod input;
+mod instead;
 mod map;
 mod method;
+mod mixture;
 mod order;
 mod pair;
 mod period;
@@ -30,6 +34,7 @@ mod torus;
 mod upstream;
 
 pub use audit::{Audit, AuditedBand, AuditedOutput, Remedy, Replaced};
+pub use image::{Ensemble, Image, pairs};
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
 pub use upstream::{Over, Upstream, Widened};
@@ -55,6 +60,28 @@ pub struct NodeDef {
     pub spec: &'static NodeSpec,
     /// Builds the node's output: as many signals as its type has components.
     pub lower: for<'b> fn(&mut Lower<'_, 'b>, &Node) -> Bundle<'b>,
+    /// Whether a node of the type gives each of many things (cells, regions, bricks) a random number:
+    /// its lowering sums any function of the numbers over them ([`Lower::image`]).
+    pub things: fn(&Node) -> bool,
+}
+
+impl NodeDef {
+    /// A node that knows of no things.
+    pub const fn new(
+        spec: &'static NodeSpec,
+        lower: for<'b> fn(&mut Lower<'_, 'b>, &Node) -> Bundle<'b>,
+    ) -> Self {
+        Self {
+            spec,
+            lower,
+            things: |_| false,
+        }
+    }
+
+    /// One that gives things numbers where this holds.
+    pub const fn of_things(self, things: fn(&Node) -> bool) -> Self {
+        Self { things, ..self }
+    }
 }
 
 /// What to compile for.
@@ -87,7 +114,8 @@ impl Default for Options {
 /// If `catalogue` is not the one that the graph was resolved with.
 pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> Program {
     let graph = checked.graph();
-    let facts = Facts::of(graph);
+    let mut facts = Facts::of(graph);
+    facts.mixtures = mixture::found(graph, catalogue, options, &facts);
     match options.method {
         Method::Auto => audit::audited(checked, catalogue, options, facts).0,
         _ => program(graph, catalogue, options, &facts),
@@ -103,7 +131,9 @@ pub fn audit(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> Aud
         method: Method::Auto,
         ..*options
     };
-    audit::audited(checked, catalogue, &options, Facts::of(checked.graph())).1
+    let mut facts = Facts::of(checked.graph());
+    facts.mixtures = mixture::found(checked.graph(), catalogue, &options, &facts);
+    audit::audited(checked, catalogue, &options, facts).1
 }
 
 /// The program of a graph of which this is known.
@@ -222,8 +252,12 @@ struct Facts {
     sampled: FxHashMap<usize, sampled::Sampling>,
     /// The nodes that repeat, which `auto` reads from maps.
     repeated: FxHashMap<usize, torus::Repeated>,
+    /// The nodes that `auto` draws to their means.
+    drawn: FxHashMap<usize, drawn::Drawn>,
     /// Whether the surface's place shapes each node's output.
     placed: Vec<bool>,
+    /// The nodes that are functions of things.
+    mixtures: mixture::Mixtures,
 }
 
 impl Facts {
@@ -235,7 +269,9 @@ impl Facts {
             literal: symbols::literal(graph),
             sampled: FxHashMap::default(),
             repeated: FxHashMap::default(),
+            drawn: FxHashMap::default(),
             placed: symbols::placed(graph),
+            mixtures: mixture::Mixtures::default(),
             live,
         }
     }
@@ -261,6 +297,8 @@ struct Compiler<'a> {
     tabulated: RefCell<FxHashMap<String, Tabulated>>,
     /// The functions of two signals, by their keys.
     maps: RefCell<FxHashMap<String, Map>>,
+    /// The functions of things, by their keys.
+    images: RefCell<FxHashMap<String, Image>>,
     /// Whether regions are worth more than their closed form, by their shapes: of two signals 1 for a
     /// map, of one signal the parts on each side of its middle; 0 for no.
     gains: RefCell<FxHashMap<shape::Shape, usize>>,
@@ -286,6 +324,7 @@ impl<'a> Compiler<'a> {
             fused: RefCell::default(),
             shapes: RefCell::default(),
             maps: RefCell::default(),
+            images: RefCell::default(),
             gains: RefCell::default(),
             library: Library::default(),
         }
@@ -335,6 +374,10 @@ pub struct Lower<'g, 'b> {
     nonlinear: bool,
     /// Whether the node at work reads what is upstream over another footprint.
     reads_elsewhere: bool,
+    /// The function of its things that the node at work is asked for.
+    image: Option<Image>,
+    /// What sources have made of their things for nodes that follow.
+    mixed: FxHashMap<usize, mixture::Mixed<'b>>,
 }
 
 impl<'g, 'b> Lower<'g, 'b> {
@@ -375,12 +418,19 @@ impl<'g, 'b> Lower<'g, 'b> {
             in_rule: false,
             nonlinear: false,
             reads_elsewhere: false,
+            image: None,
+            mixed: FxHashMap::default(),
         }
     }
 
     /// Lowers every live node.
     fn run(&mut self) {
-        let live = self.compiler.facts.live.clone();
+        let facts = self.compiler.facts;
+        let live = if self.mixes() && !facts.mixtures.is_empty() {
+            facts.mixtures.live(self.compiler.graph)
+        } else {
+            facts.live.clone()
+        };
         self.run_nodes(live);
     }
 
@@ -413,9 +463,9 @@ impl<'g, 'b> Lower<'g, 'b> {
         let graph = self.compiler.graph;
         let mut uses = vec![0; graph.nodes.len()];
         uses[index] = 1;
-        for node in fusion::region(self.compiler, index, &[]) {
-            for input in &graph.nodes[node].inputs {
-                if let Source::Node(id) = input.source {
+        for node in (0..=index).rev() {
+            if uses[node] > 0 {
+                for id in self.reads(node) {
                     uses[id.index()] += 1;
                 }
             }
@@ -439,7 +489,12 @@ impl<'g, 'b> Lower<'g, 'b> {
             self.is_only_measured = self.only_measured.get(index) == Some(&true);
             let forks = uses[index] > 1;
             self.algebra.shares = forks;
-            let kept = forks.then(|| self.algebra.next_symbol());
+            let mixed = self.mixed(index);
+            let next = match &mixed {
+                Some((_, first)) => *first,
+                None => self.algebra.next_symbol(),
+            };
+            let kept = forks.then_some(next);
             let definition = &self.compiler.catalogue[node.definition];
             assert_eq!(
                 definition.spec.name, node.spec.name,
@@ -449,7 +504,11 @@ impl<'g, 'b> Lower<'g, 'b> {
             self.algebra.knots = 0;
             self.algebra.period = None;
             self.reads_elsewhere = false;
-            let mut bundle = (definition.lower)(self, node);
+            let is_mixed = mixed.is_some();
+            let mut bundle = match mixed {
+                Some((bundle, _)) => bundle,
+                None => self.with_images(index, node, &uses),
+            };
             assert_eq!(
                 bundle.len(),
                 node.ty.components(),
@@ -457,7 +516,7 @@ impl<'g, 'b> Lower<'g, 'b> {
                 node.spec.name
             );
             self.nonlinear |= self.algebra.bent;
-            if let Some(fused) = self.fuse(index, node, &bundle) {
+            if !is_mixed && let Some(fused) = self.fuse(index, node, &bundle) {
                 bundle = fused;
             }
             if let Some(other) = self.instead(index, &bundle) {
@@ -469,14 +528,12 @@ impl<'g, 'b> Lower<'g, 'b> {
             self.carriers.born(&bundle);
             // Inputs that nothing else reads are gone: a symbol that only this signal still carries
             // is nobody's business.
-            for input in &node.inputs {
-                if let Source::Node(id) = input.source {
-                    uses[id.index()] -= 1;
-                    if uses[id.index()] == 0
-                        && let Some(dead) = self.bundles[id.index()].take()
-                    {
-                        self.carriers.died(&dead);
-                    }
+            for id in self.reads(index) {
+                uses[id.index()] -= 1;
+                if uses[id.index()] == 0
+                    && let Some(dead) = self.bundles[id.index()].take()
+                {
+                    self.carriers.died(&dead);
                 }
             }
             let kept = kept.unwrap_or(Symbol(u32::MAX));
@@ -493,18 +550,6 @@ impl<'g, 'b> Lower<'g, 'b> {
                 }
             }
             self.bundles[index] = Some(bundle);
-        }
-    }
-
-    /// What takes the place of a closed form that the audit found to be wrong.
-    fn instead(&mut self, index: usize, closed: &[Signal<'b>]) -> Option<Bundle<'b>> {
-        let repeated = self.repeated(index, closed);
-        match self.sampling(index) {
-            Some(sampling) => {
-                let closed = repeated.unwrap_or_else(|| closed.to_vec());
-                Some(self.sampled(index, &closed, sampling))
-            }
-            None => repeated,
         }
     }
 

@@ -12,6 +12,8 @@ pub enum Severity {
     Error,
     /// The graph compiles, but probably not to what was meant.
     Warning,
+    /// Something was read in another way than it is written, as what it is read into has it.
+    Note,
 }
 
 /// A mistake of the user, found in a document.
@@ -69,6 +71,14 @@ impl Diagnostic {
     pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Warning,
+            ..Self::error(code, message)
+        }
+    }
+
+    /// A note without a place.
+    pub fn note(code: &'static str, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Note,
             ..Self::error(code, message)
         }
     }
@@ -154,6 +164,7 @@ impl fmt::Display for Shown<'_> {
         let severity = match diagnostic.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
+            Severity::Note => "note",
         };
         write!(f, "{severity}[{}]: {}", diagnostic.code, diagnostic.message)?;
         let position = diagnostic.line.zip(diagnostic.column);

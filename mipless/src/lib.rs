@@ -1,12 +1,14 @@
 //! Self-filtering procedural texture graphs for tools: load, check, edit, compile, evaluate.
 //!
-//! This crate needs no graphics device. It has two features, both of them on by default:
+//! This crate needs no graphics device. It has three features, of which the first two are on by
+//! default:
 //!
 //! - `files` decodes the pictures that graphs name ([`Texture::from_file`], [`Texture::with_files`]).
 //!   Without it, a graph that names one has a located mistake, `feature-off`.
 //! - `targets` validates shaders and translates them to SPIR-V, GLSL, HLSL and MSL by naga
 //!   (`target::validate`, `target::translate`). Without it there are WGSL and its
 //!   [`target::Manifest`], and naga is not built.
+//! - `import` reads MaterialX, Material Maker and glTF documents into graphs (`import::import`).
 //!
 //! A tool that only wants WGSL of graphs without pictures says `default-features = false`, and
 //! builds in half the time.
@@ -122,6 +124,10 @@ mod files;
 mod picture;
 mod resource;
 mod texture;
+
+/// Documents of other tools, read into graphs.
+#[cfg(feature = "import")]
+pub use mipless_import as import;
 
 pub use evaluator::{SetError, TextureEvaluator};
 pub use files::{

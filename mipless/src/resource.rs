@@ -46,7 +46,9 @@ pub(crate) fn read(references: &[FileReference], files: &dyn Files) -> (Images, 
         if let Some(remark) = remark.clone() {
             let diagnostic = match remark.severity {
                 Severity::Error => reference.error(remark.code, remark.message),
-                Severity::Warning => reference.warning(remark.code, remark.message),
+                Severity::Warning | Severity::Note => {
+                    reference.warning(remark.code, remark.message)
+                }
             };
             diagnostics.push(diagnostic.help(remark.help));
         }

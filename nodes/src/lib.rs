@@ -5,7 +5,8 @@
 //! that builds IR through the moment algebra. Nothing else knows a node by name.
 
 /// The nodes of a room, a line each: `clamp,` declares the module of a node and lists its
-/// definition; `rounding::floor,` lists a row of a family, whose module the room declares itself.
+/// definition; `rounding::floor,` lists a row of a family, whose module the room declares itself;
+/// `brick with things,` lists a node that gives things numbers where its function `things` says so.
 ///
 /// `cargo fmt` does not look into a macro for modules, so that the files of nodes are named to
 /// `rustfmt` one by one: see `.ci/run`.
@@ -13,15 +14,18 @@ macro_rules! room {
     (@module $node:ident) => { pub(crate) mod $node; };
     (@module $family:ident::$node:ident) => {};
     (@definition $node:ident) => {
-        mipless_codegen::NodeDef { spec: &$node::SPEC, lower: $node::lower }
+        mipless_codegen::NodeDef::new(&$node::SPEC, $node::lower)
+    };
+    (@definition $node:ident with things) => {
+        mipless_codegen::NodeDef::new(&$node::SPEC, $node::lower).of_things($node::things)
     };
     (@definition $family:ident::$node:ident) => { $family::$node() };
-    ($($file:ident $(::$row:ident)?,)*) => {
+    ($($file:ident $(::$row:ident)? $(with $things:ident)?,)*) => {
         $(room! { @module $file $(::$row)? })*
 
         /// The definitions of the room's nodes, in the order of the reference pages.
         pub(crate) const NODES: &[mipless_codegen::NodeDef] =
-            &[$(room! { @definition $file $(::$row)? }),*];
+            &[$(room! { @definition $file $(::$row)? $(with $things)? }),*];
     };
 }
 

@@ -18,6 +18,7 @@ pub(crate) mod ridge;
 pub(crate) mod source;
 pub(crate) mod spectral;
 pub(crate) mod sum;
+pub(crate) mod things;
 mod tile;
 pub(crate) mod volume;
 mod window;
@@ -25,8 +26,8 @@ pub(crate) mod worley;
 
 room! {
     byexample,
-    cellnoise2d,
-    cellnoise3d,
+    cellnoise2d with things,
+    cellnoise3d with things,
     fractal2d,
     fractal3d,
     gabornoise2d,
@@ -42,5 +43,5 @@ room! {
     unifiednoise2d,
     valuenoise2d,
     whitenoise2d,
-    worleynoise2d,
+    worleynoise2d with things,
 }

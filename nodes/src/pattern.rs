@@ -29,7 +29,7 @@ pub(crate) mod wanted;
 mod waves;
 
 room! {
-    brick,
+    brick with things,
     checkerboard,
     circle,
     cloverleaf,

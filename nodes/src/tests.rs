@@ -66,10 +66,7 @@ fn ripples() -> Picture {
 
 fn definitions() -> Vec<NodeDef> {
     let mut all = catalogue().to_vec();
-    all.push(NodeDef {
-        spec: &GAUSSIAN,
-        lower: gaussian,
-    });
+    all.push(NodeDef::new(&GAUSSIAN, gaussian));
     all
 }
 

@@ -103,10 +103,7 @@ impl Random {
 
 fn catalogue() -> Vec<NodeDef> {
     let mut all = mipless_nodes::catalogue().to_vec();
-    all.push(NodeDef {
-        spec: &WAVES,
-        lower: waves,
-    });
+    all.push(NodeDef::new(&WAVES, waves));
     all
 }
 

@@ -101,10 +101,7 @@ fn table<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
 /// The means of `o` under the Gaussians, and the bytes of tables that are read.
 fn ours(nodes: &str, places: &[[f64; 2]]) -> (Vec<f64>, usize) {
     let mut catalogue = mipless_nodes::catalogue().to_vec();
-    catalogue.push(NodeDef {
-        spec: &TABLE,
-        lower: table,
-    });
+    catalogue.push(NodeDef::new(&TABLE, table));
     let specs: Vec<_> = catalogue.iter().map(|def| def.spec).collect();
     let text = format!(
         r#"{{"version":1,"name":"map","nodes":{{"uv":{{"type":"texcoord"}},"x":{{"type":"extract","inputs":{{"in":{{"node":"uv"}},"index":0}}}},{nodes}}},"outputs":{{"out":{{"node":"o"}}}}}}"#

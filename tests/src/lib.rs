@@ -17,12 +17,15 @@
 //! | `names` | whatever things are called, every target compiles |
 //! | `linear` | what a graph costs grows as the graph does |
 //! | `closure` | the errors that the check predicts, against rendered truth |
+//! | `importing`, `importing_json` | what each rule makes of documents of other tools |
+//! | `corpus` | public documents of other tools, where they are at hand |
 //! | `tidy` | the order of the house: arrows, generated files, names |
 //! | `book` | the pages of the nodes and their pictures |
 //! | `links` | what all documents link to, show and quote |
 
 pub mod book;
 pub mod case;
+pub mod document;
 pub mod generated;
 pub mod law;
 pub mod markdown;

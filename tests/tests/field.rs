@@ -13,7 +13,7 @@ const FLOOR: f64 = 0.004;
 /// What people build of `fract`, `floor` and the like of coordinates `u` and `v`, of the ids `id` of
 /// regions and `cell` of cells; the error of `o` that is allowed where a pixel is finest, and
 /// anywhere.
-const GRAPHS: [(&str, [f64; 2], &str); 8] = [
+const GRAPHS: [(&str, [f64; 2], &str); 14] = [
     (
         "stripes by floor and modulo",
         [0.01, 0.02],
@@ -41,13 +41,43 @@ const GRAPHS: [(&str, [f64; 2], &str); 8] = [
     ),
     (
         "random colours of regions",
-        [0.015, 0.08],
+        [0.005, 0.035],
         r#""o":{"type":"randomcolor","inputs":{"in":{"node":"id"}}}"#,
     ),
     (
         "random colours of cells",
-        [0.015, 0.08],
+        [0.002, 0.01],
         r#""o":{"type":"randomcolor","inputs":{"in":{"node":"cell"}}}"#,
+    ),
+    (
+        "steps of colour over cells",
+        [0.002, 0.01],
+        r##""o":{"type":"colorramp","inputs":{"in":{"node":"cell"},"interpolation":"constant","stops":[{"at":0,"value":"#204060"},{"at":0.3,"value":"#f0e0a0"},{"at":0.5,"value":"#803010"},{"at":1,"value":"#101010"}]}}"##,
+    ),
+    (
+        "a hue, a threshold and a random number of cells, multiplied",
+        [0.002, 0.01],
+        r#""h":{"type":"combine3","inputs":{"in1":{"node":"cell"},"in2":0.8,"in3":0.7}},"c":{"type":"hsvtorgb","inputs":{"in":{"node":"h"}}},"s":{"type":"ifgreater","inputs":{"value1":{"node":"cell"},"value2":0.4,"in1":1,"in2":0.2}},"r":{"type":"randomfloat","inputs":{"in":{"node":"cell"},"min":0.5}},"d":{"type":"multiply","inputs":{"in1":{"node":"s"},"in2":{"node":"r"}}},"o":{"type":"multiply","inputs":{"in1":{"node":"c"},"in2":{"node":"d"}}}"#,
+    ),
+    (
+        "random colours of cells in space",
+        [0.005, 0.02],
+        r#""s":{"type":"cellnoise3d","inputs":{"frequency":6}},"o":{"type":"randomcolor","inputs":{"in":{"node":"s"}}}"#,
+    ),
+    (
+        "random colours of cells, in some cells over a noise",
+        [0.005, 0.02],
+        r#""c":{"type":"randomcolor","inputs":{"in":{"node":"cell"}}},"m":{"type":"step","inputs":{"in":{"node":"cell"},"edge":0.6}},"w":{"type":"noise2d","inputs":{"frequency":3,"amplitude":0.5,"pivot":0.5}},"o":{"type":"mix","inputs":{"bg":{"node":"w"},"fg":{"node":"c"},"mix":{"node":"m"}}}"#,
+    ),
+    (
+        "random colours of bricks",
+        [0.002, 0.01],
+        r#""b":{"type":"brick","inputs":{"output":"random"}},"o":{"type":"randomcolor","inputs":{"in":{"node":"b"}}}"#,
+    ),
+    (
+        "random colours of the steps of a coordinate",
+        [0.015, 0.08],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"u"},"in2":6}},"f":{"type":"floor","inputs":{"in":{"node":"x"}}},"o":{"type":"randomcolor","inputs":{"in":{"node":"f"}}}"#,
     ),
     (
         "a ramp of the steps of a coordinate",

@@ -2,6 +2,7 @@
 
 mod audit;
 mod bad_graphs;
+mod documents;
 mod folder;
 mod images;
 mod names;

@@ -11,16 +11,20 @@
 //! 3. the nodes at which the error begins by points ([`super::sampled`]), what follows them closed;
 //! 4. the outputs themselves by points.
 //!
-//! Each node is sampled in the bands alone where that is better. The result depends on the graph
+//! Each node is sampled in the bands alone where that is better. What is left of an output's error
+//! is then less where it is drawn to the mean of the texture ([`super::drawn`]). The result depends on the graph
 //! alone, and is remembered by its shape ([`super::shape`]): an edit that changes nothing that
 //! matters costs nothing.
 
 mod extent;
+mod settings;
 mod suspects;
 mod truth;
 mod verdict;
 
 use super::bands::Bands;
+use super::drawn::Drawn;
+use super::mixture::Mixtures;
 use super::sampled::Sampling;
 use super::shape::{Shape, shape};
 use super::torus::Repeated;
@@ -28,9 +32,10 @@ use super::{Compiler, Facts, Method, NodeDef, Options, program};
 use crate::ir::Program;
 use mipless_graph::{Checked, Class, Graph, NodeId};
 use rustc_hash::FxHashMap;
+use settings::Change;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 use suspects::{beginnings, ends, readers, repeated, steady};
-use truth::{Errors, GLANCE, LOOK, Truth, footprints, values};
+use truth::{BIASED, Errors, GLANCE, LARGEST, LOOK, Truth, footprints, values};
 use verdict::{NOTICEABLE, Verdict, where_better};
 
 /// Errors that are worth points: somewhat less than what an output may be off, so that bands beside
@@ -39,7 +44,7 @@ const SAMPLED: f64 = 0.8 * verdict::TOLERANCE;
 
 /// The most nodes of a graph that is audited: an audit takes about as long as a picture of 500 × 500
 /// points.
-const LARGEST: usize = 4096;
+const MOST_NODES: usize = 4096;
 
 /// The most graphs that a process remembers.
 const MOST: usize = 1024;
@@ -56,12 +61,14 @@ pub struct Audit {
 }
 
 /// What `auto` does in place of a closed form.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Remedy {
-    /// The node is averaged over points inside the footprint.
-    Sampled,
     /// The node depends on position alone and repeats: it is read from a map of its period.
     Repeated,
+    /// The node is averaged over points inside the footprint.
+    Sampled,
+    /// The node is drawn to the mean of the texture.
+    Drawn,
 }
 
 /// A node that `auto` does not close.
@@ -112,8 +119,10 @@ pub struct AuditedBand {
 /// What is decided for a graph.
 #[derive(Debug, Default)]
 struct Decision {
+    mixtures: Mixtures,
     sampled: FxHashMap<usize, Sampling>,
     repeated: FxHashMap<usize, Repeated>,
+    drawn: FxHashMap<usize, Drawn>,
     audit: Audit,
 }
 
@@ -128,7 +137,7 @@ pub(super) fn audited(
     mut facts: Facts,
 ) -> (Program, Audit) {
     let graph = checked.graph();
-    let is_too_large = facts.order.len() > LARGEST;
+    let is_too_large = facts.order.len() > MOST_NODES;
     if is_too_large || is_exact(checked) {
         let audit = Audit {
             is_too_large,
@@ -142,8 +151,10 @@ pub(super) fn audited(
         known.get(shape).cloned()
     });
     if let Some(known) = known {
+        facts.mixtures = known.mixtures.clone();
         facts.sampled = known.sampled.clone();
         facts.repeated = known.repeated.clone();
+        facts.drawn = known.drawn.clone();
         return (
             program(graph, catalogue, options, &facts),
             known.audit.clone(),
@@ -182,9 +193,10 @@ fn shape_of(
     Some(words)
 }
 
-/// A program with its errors and with what it is made of.
+/// A program with its values, their errors and what it is made of.
 struct Candidate {
     program: Program,
+    values: Vec<Vec<f32>>,
     errors: Errors,
     sampled: FxHashMap<usize, Sampling>,
     repeated: FxHashMap<usize, Repeated>,
@@ -222,12 +234,18 @@ fn decide(
     let found = values(&closed, footprints);
     let errors = glance.errors(&found);
     let (point, floor) = (glance.errors(&glance.point), glance.floor());
-    if Verdict::of(&errors, &point, &floor).is_good() {
+    let steady = steady(graph);
+    let outputs: Vec<(usize, usize)> = (graph.outputs.iter().enumerate())
+        .map(|(output, of)| (output, of.node.index()))
+        .collect();
+    let is_biased = |&(output, _): &(usize, usize)| glance.far_bias(output, &found) > BIASED;
+    if Verdict::of(&errors, &point, &floor).is_good() && !outputs.iter().any(is_biased) {
         let audit = Audit {
             outputs: audited_outputs(bands, [&point, &errors, &errors, &floor]),
             ..Audit::default()
         };
         let decision = Decision {
+            mixtures: facts.mixtures.clone(),
             audit,
             ..Decision::default()
         };
@@ -238,8 +256,10 @@ fn decide(
     let verdict = |errors: &Errors| Verdict::of(errors, &point, &floor);
     let candidate = |facts: &Facts| {
         let program = program(graph, catalogue, options, facts);
+        let values = values(&program, footprints);
         Candidate {
-            errors: truth.errors(&values(&program, footprints)),
+            errors: truth.errors(&values),
+            values,
             program,
             sampled: facts.sampled.clone(),
             repeated: facts.repeated.clone(),
@@ -249,10 +269,21 @@ fn decide(
     let mut best = Candidate {
         program: closed,
         errors: closed_errors.clone(),
+        values: found,
         sampled: FxHashMap::default(),
         repeated: FxHashMap::default(),
     };
 
+    if !facts.mixtures.is_empty() {
+        // What is closed without them is worth as much, where it is as good.
+        let mixtures = std::mem::take(&mut facts.mixtures);
+        let plain = candidate(facts);
+        if verdict(&plain.errors).beats(verdict(&best.errors)) {
+            best = plain;
+        } else {
+            facts.mixtures = mixtures;
+        }
+    }
     let readers = readers(graph);
     if !verdict(&best.errors).is_good() {
         facts.repeated = repeated(bands, checked, catalogue, options, facts);
@@ -268,7 +299,6 @@ fn decide(
         if verdict(&best.errors).is_good() {
             break;
         }
-        let steady = steady(graph);
         let mut added = match by {
             Points::AtBeginnings => beginnings(at, graph, catalogue, options, facts, &steady),
             Points::AtEnds => ends(graph, &truth, [&best.errors, &point, &floor], &steady),
@@ -285,25 +315,70 @@ fn decide(
         facts.sampled.clone_from(&best.sampled);
     }
 
+    // Nodes with the first output that reads them.
+    for &(output, node) in outputs.iter().rev() {
+        match truth.drawn(output, &best.values, steady[node]) {
+            Some(drawn) => facts.drawn.insert(node, drawn),
+            None => facts.drawn.remove(&node),
+        };
+    }
+    let live: Vec<(usize, usize)> = (outputs.iter().copied())
+        .filter(|(_, node)| !steady[*node] && facts.drawn.contains_key(node))
+        .collect();
+    if !live.is_empty() {
+        let right = Options {
+            method: Method::Supersample(LOOK),
+            moments: false,
+            ..*options
+        };
+        let change = Change {
+            before: &best.program,
+            after: &program(graph, catalogue, options, facts),
+            right: &program(graph, catalogue, &right, facts),
+        };
+        let largest = &footprints[footprints.len() - LARGEST..];
+        let components: Vec<_> = (live.iter())
+            .map(|&(output, _)| truth.components(output))
+            .collect();
+        let helps = change.helps(graph, largest, &components);
+        for ((_, node), helps) in live.into_iter().zip(helps) {
+            if !helps {
+                facts.drawn.remove(&node);
+            }
+        }
+    }
+    if !facts.drawn.is_empty() {
+        let drawn = candidate(facts);
+        if verdict(&drawn.errors).square < verdict(&best.errors).square {
+            best = drawn;
+        } else {
+            facts.drawn.clear();
+        }
+    }
+
     let sampled = (best.sampled.iter()).map(|(&node, by)| (node, Remedy::Sampled, by.within));
     let repeated = (best.repeated.iter()).map(|(&node, by)| (node, Remedy::Repeated, by.within));
+    let drawn = (facts.drawn.iter()).map(|(&node, by)| (node, Remedy::Drawn, by.within()));
     let mut replaced: Vec<Replaced> = sampled
         .chain(repeated)
+        .chain(drawn)
         .map(|(node, remedy, within)| Replaced {
             node: NodeId(node as u32),
             remedy,
             sizes: bands.sizes(within),
         })
         .collect();
-    replaced.sort_by_key(|replaced| (replaced.node, replaced.remedy == Remedy::Sampled));
+    replaced.sort_by_key(|replaced| (replaced.node, replaced.remedy));
     let audit = Audit {
         outputs: audited_outputs(bands, [&point, &closed_errors, &best.errors, &floor]),
         replaced,
         is_too_large: false,
     };
     let decision = Decision {
+        mixtures: facts.mixtures.clone(),
         sampled: best.sampled,
         repeated: best.repeated,
+        drawn: facts.drawn.clone(),
         audit,
     };
     (best.program, decision)

@@ -280,9 +280,14 @@ impl<'b> Lower<'_, 'b> {
 
 /// The nodes from `entries` (exclusive) to `index`, inputs first.
 pub(super) fn region(compiler: &Compiler<'_>, index: usize, entries: &[NodeId]) -> Vec<usize> {
-    let mut region = vec![index];
+    regions(compiler, &[index], entries)
+}
+
+/// The same of several nodes, each once.
+pub(super) fn regions(compiler: &Compiler<'_>, ends: &[usize], entries: &[NodeId]) -> Vec<usize> {
+    let mut region = ends.to_vec();
     let mut seen: rustc_hash::FxHashSet<usize> = entries.iter().map(|e| e.index()).collect();
-    seen.insert(index);
+    seen.extend(ends);
     let mut next = 0;
     while next < region.len() {
         for input in &compiler.graph.nodes[region[next]].inputs {

@@ -7,12 +7,11 @@
 //! response and the rest of the variance of the points are the node's signal.
 //!
 //! Where a footprint holds so much of the texture that its true mean hardly varies from place to
-//! place, seven points say less than the mean of the texture itself. The best linear estimate from
-//! both (Wiener) keeps the share V/(V + N/7) of the points' deviation from it, with V the variance
-//! of the true mean over places and N that of points within a footprint, as [`super::audit`]
-//! measures them.
+//! place, seven points say less than the mean of the texture itself: they are drawn to it
+//! ([`super::drawn`]).
 
 use super::bands::Bands;
+use super::drawn::Drawn;
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::float::Float as _;
 use crate::ir::{Builder, Float, FunctionRef, Module, Vec2};
@@ -27,14 +26,10 @@ const TURNS: u32 = 64;
 /// How a node is sampled.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sampling {
-    /// The mean of the texture, for each component.
-    pub(super) far: Vec<f32>,
-    /// The share of the points' deviation from it that is kept, in each band.
-    pub(super) kept: [f32; Bands::COUNT],
+    /// How far the points are drawn to the mean of the texture.
+    pub(super) drawn: Drawn,
     /// The bits of the bands where the node is sampled.
     pub(super) within: u32,
-    /// The bands.
-    pub(super) bands: Bands,
 }
 
 impl<'g, 'b> Lower<'g, 'b> {
@@ -63,7 +58,7 @@ impl<'g, 'b> Lower<'g, 'b> {
         });
         let b = self.b();
         let place = self.arguments.clone();
-        let band = sampling.bands.of(&place);
+        let band = sampling.drawn.bands.of(&place);
         let within = Bands::within(band, sampling.within);
         let everywhere = within.as_constant() == Some(true);
 
@@ -74,18 +69,10 @@ impl<'g, 'b> Lower<'g, 'b> {
         let sums = b.fold(&sample, points, start, (turn, place));
 
         let weight = 1.0 / POINTS as f32;
-        let mut kept = b.float(sampling.kept[0]);
-        for (i, pair) in sampling.kept.windows(2).enumerate() {
-            kept += (pair[1] - pair[0]) * (band - i as f32).clamp(0.0, 1.0);
-        }
-        // Of what has a mean, nothing but the mean is left two bands after the last.
-        let last = Bands::COUNT - 1;
-        if sampling.kept[last] < 0.5 {
-            kept *= 1.0 - (0.5 * (band - last as f32)).clamp(0.0, 1.0);
-        }
+        let lost = sampling.drawn.lost(band);
         (closed.iter().zip(sums.chunks(Sums::COUNT)))
-            .zip(&sampling.far)
-            .map(|((closed, sums), &far)| {
+            .enumerate()
+            .map(|(i, (closed, sums))| {
                 let sums = Sums::of(sums);
                 let apart = weight * sums.apart;
                 let g = Vec2([weight * sums.along[0], weight * sums.along[1]]);
@@ -94,7 +81,7 @@ impl<'g, 'b> Lower<'g, 'b> {
                 let points = Signal {
                     g,
                     private: (variance - g.norm2()).max(0.0),
-                    ..Signal::certain(far + kept * (mean - far)).with_range(closed.range)
+                    ..Signal::certain(sampling.drawn.draw(i, mean, lost)).with_range(closed.range)
                 };
                 if everywhere {
                     points

@@ -57,7 +57,10 @@ pub(super) fn found(compiler: &Compiler<'_>, index: usize) -> Option<Periods> {
 }
 
 /// A module of its own, to be evaluated while compiling.
-fn alone(compiler: &Compiler<'_>, build: impl FnOnce(&Compiler<'_>, &mut Module)) -> Module {
+pub(super) fn alone(
+    compiler: &Compiler<'_>,
+    build: impl FnOnce(&Compiler<'_>, &mut Module),
+) -> Module {
     let of = (compiler.graph, compiler.facts);
     let compiler = Compiler::new(of, compiler.catalogue, compiler.options);
     let mut module = Module::default();

@@ -3,7 +3,8 @@
 //! Level l holds E[T] under an isotropic Gaussian on a grid of at most σ_l/2, read linearly in
 //! position and in σ. A covariance Σ is read by five taps along its major axis: with s² =
 //! max(λ₂, λ₁/25), Σ ≈ s² I + (λ₁ − s²) v vᵀ, which blurs the minor axis too far and keeps the
-//! major variance (MATH §5; DESIGN §7). So any correlation of the two signals is filtered, where
+//! major variance (MATH §5; DESIGN §7); of a map that repeats, a long footprint is read place by place
+//! ([`long`]). So any correlation of the two signals is filtered, where
 //! Grenier et al. 2022 tabulate axis-aligned ones alone.
 //!
 //! Where second-order coefficients are carried, the mean is that of four parts of the footprint, by
@@ -13,6 +14,7 @@
 //! texel are packed into one number. Below the finest σ the function itself is the other end.
 
 mod bake;
+mod long;
 mod pack;
 mod read;
 mod split;
@@ -118,6 +120,8 @@ pub(crate) struct Map {
     tables: [u32; 4],
     /// The functions that read a moment's level at a place.
     readers: [FunctionRef; 4],
+    /// Of a map that repeats, the function that reads one more place along a long footprint.
+    step: Option<FunctionRef>,
 }
 
 impl Map {
@@ -146,6 +150,9 @@ impl Map {
             let table = tables[moment as usize];
             read::bilinear(module, &format!("{name}_{suffix}_at"), table, &packing)
         });
+        let mean = &readers[Moment::Mean as usize];
+        let step =
+            (domain.periodic).then(|| long::step(module, &format!("{name}_step"), mean, &packing));
         let branch = Branch::of_numbers(module, name, &function, 2);
         Self {
             function,
@@ -156,6 +163,7 @@ impl Map {
             levels,
             tables,
             readers,
+            step,
         }
     }
 }

@@ -72,7 +72,7 @@ macro_rules! modes {
                 class: $class,
                 example: modes!(@ $node $($before => $layers)?),
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| blend(lower, node, $mode) }
+            NodeDef::new(&SPEC, |lower, node| blend(lower, node, $mode))
         }
     )*};
     (@ $node:ident) => {

@@ -54,13 +54,10 @@ macro_rules! comparisons {
 "#, $before, r#"    ""#, stringify!($node), r#"": {"type": ""#, stringify!($node),
                     r#"", "inputs": {"#, $values, r#", "in1": {"node": "bands"}, "in2": "#, $other, "}}\n") },
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| {
-                    let [$first, $second] = ["value1", "value2"].map(|port| lower.signal(node, port));
-                    chosen(lower, node, &$condition, &$thresholds, |$yes, $no| $branches)
-                },
-            }
+            NodeDef::new(&SPEC, |lower, node| {
+                let [$first, $second] = ["value1", "value2"].map(|port| lower.signal(node, port));
+                chosen(lower, node, &$condition, &$thresholds, |$yes, $no| $branches)
+            })
         }
     )*};
 }

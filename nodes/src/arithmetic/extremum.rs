@@ -39,7 +39,7 @@ macro_rules! extrema {
                     r#"", "inputs": { "in1": { "node": "bands" }, "in2": { "node": "across" } } }
 "#) },
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| binary(lower, node, ["in1", "in2"], $rule) }
+            NodeDef::new(&SPEC, |lower, node| binary(lower, node, ["in1", "in2"], $rule))
         }
     )*};
 }

@@ -50,10 +50,7 @@ macro_rules! extrema {
                     r#"", "inputs": {"in1": {"node": "bands"}, "in2": {"node": "noise"}, "width": 0.3}}
 "#) },
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| rounded(lower, node, |$apart| $signed),
-            }
+            NodeDef::new(&SPEC, |lower, node| rounded(lower, node, |$apart| $signed))
         }
     )*};
 }

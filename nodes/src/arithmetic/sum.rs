@@ -38,7 +38,7 @@ macro_rules! sums {
                     r#"", "inputs": { "in1": { "node": "bands" }, "in2": { "node": "across" } } }
 "#) },
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| binary(lower, node, ["in1", "in2"], $rule) }
+            NodeDef::new(&SPEC, |lower, node| binary(lower, node, ["in1", "in2"], $rule))
         }
     )*};
 }

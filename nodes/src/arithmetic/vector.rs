@@ -42,7 +42,7 @@ macro_rules! lengths {
     "turned": {"type": "rotate2d", "inputs": {"in": {"node": "uv"}, "amount": 30}},
 "#, $example) },
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| measured(lower, node, $components) }
+            NodeDef::new(&SPEC, |lower, node| measured(lower, node, $components))
         }
     )*};
 }

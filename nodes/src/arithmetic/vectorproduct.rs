@@ -44,7 +44,7 @@ macro_rules! products {
     "turned": {"type": "rotate2d", "inputs": {"in": {"node": "uv"}, "amount": 30}},
 "#, $example) },
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| multiplied(lower, node, $rule) }
+            NodeDef::new(&SPEC, |lower, node| multiplied(lower, node, $rule))
         }
     )*};
 }

@@ -37,13 +37,10 @@ macro_rules! combinations {
                 class: |_| Behaviour::Linear,
                 example: example! { stringify!($node), $example },
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| {
-                    let ports = SPEC.inputs.iter();
-                    ports.map(|port| lower.signal(node, port.name)).collect()
-                },
-            }
+            NodeDef::new(&SPEC, |lower, node| {
+                let ports = SPEC.inputs.iter();
+                ports.map(|port| lower.signal(node, port.name)).collect()
+            })
         }
     )*};
 }

@@ -46,7 +46,7 @@ macro_rules! separations {
                 class: |_| Behaviour::Linear,
                 example: $example,
             };
-            NodeDef { spec: &SPEC, lower: component }
+            NodeDef::new(&SPEC, component)
         }
     )*};
 }

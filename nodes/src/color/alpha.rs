@@ -41,7 +41,7 @@ macro_rules! operations {
     ""#, stringify!($node), r#"": {"type": ""#, stringify!($node),
                     r#"", "inputs": {"in": {"node": ""#, $layer, "\"}}}\n") },
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| beside_alpha(lower, node, $channel) }
+            NodeDef::new(&SPEC, |lower, node| beside_alpha(lower, node, $channel))
         }
     )*};
 }

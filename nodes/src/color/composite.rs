@@ -75,7 +75,7 @@ macro_rules! operations {
                 class: |_| Behaviour::Product,
                 example: layered!($name),
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| composite(lower, node, $channel) }
+            NodeDef::new(&SPEC, |lower, node| composite(lower, node, $channel))
         }
     )*};
 }

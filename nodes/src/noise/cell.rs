@@ -4,18 +4,23 @@
 //! taken for Gaussian, with the mean and the variance that it has given the row: for footprints
 //! whose axes are the lattice's that is exact, for others what errs is that a truncated normal's
 //! shear is not normal.
+//!
+//! What is summed is any function of the numbers: the [`Image`] that is asked for.
 
 pub(crate) mod line;
 pub(crate) mod passed;
 pub(crate) mod place;
 pub(crate) mod space;
 
-use super::field::{Field, Spread};
+use super::field::Spread;
 use super::period::wrapped;
-use line::Sums;
-use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Sym2, Uint, Vec2};
+use super::things::{
+    Filtered, Sums, attach, channels, declared_ensemble, ensemble, named, weighted,
+};
+use line::Sums as LineSums;
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Scalar, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Normal, Signal};
+use mipless_codegen::{Image, Lower, pairs};
 use passed::{Passed, passed};
 
 /// The variance of a number of [0, 1).
@@ -84,20 +89,29 @@ pub(crate) fn coincidence(variance: Float<'_>) -> Float<'_> {
     ((inside + inside) - (lost + lost)).clamp(0.0, 1.0)
 }
 
-/// The filtered cells at a position; the mean lies around ½.
+/// The filtered cells at a position, for each component of the image that is asked for.
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
     seed: i32,
     period: i32,
-) -> Field<'b> {
+) -> Vec<Signal<'b>> {
     let mode = lower.mode();
     let spread = Spread::of(position);
     report(lower, spread.eigenvalues[0].sqrt());
-    let key = format!("cells {mode:?} {seed} {period}");
-    let function = lower.function(&key, |module| build(module, mode, seed, period));
-    let results = place::called(lower, &function, (position, &spread), ());
-    place::field(&results[..results.len().min(3)], results.get(3).copied())
+    let (image, parameters) = lower.image();
+    let key = format!("cells {mode:?} {seed} {period} {}", image.key());
+    let function = lower.function(&key, |module| build(module, mode, seed, period, &image));
+    let widest = spread.covariance[0].max(spread.covariance[2]);
+    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0]).lt(1.0));
+    let others = (parameters, ensemble);
+    let results = place::called(lower, &function, (position, &spread), others);
+    let (fields, rest) = results.split_at(results.len().min(3 * image.channels()));
+    let mut signals: Vec<Signal<'b>> = (fields.chunks(3))
+        .map(|field| place::field(field, None).at(lower, position))
+        .collect();
+    attach(lower, &image, &mut signals, rest);
+    signals
 }
 
 /// The window of a standard deviation: where it starts, and how many cells it has.
@@ -123,13 +137,17 @@ fn counted<'b>(cells: Float<'b>, fade: Float<'b>) -> Uint<'b> {
 }
 
 passed! {
-    /// What the cells of a row have in common: where its window starts, the Gaussian in it, and the
-    /// number at the centre.
+    /// What the cells of a row have in common: where its window starts, and the Gaussian in it.
     struct Row {
         start: Float,
         mean: Float,
         inverse_sd: Float,
-        centre: Float,
+    }
+}
+
+passed! {
+    /// Which cells these are.
+    struct RowCells {
         cell_x: Int,
         row: Int,
         seed: Uint,
@@ -137,15 +155,27 @@ passed! {
 }
 
 /// The cells of one row, the body of a fold over columns.
-fn column(module: &mut Module, period: i32) -> FunctionRef {
+fn column(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
     let b = &Builder::new("cell_column", "One cell of a row.");
     let index = b.uint_param("index");
-    let sums = Sums::declare(b, 1);
+    let sums = LineSums::declare(b, image.channels());
     let row = Row::declare(b);
+    let centre = channels(b, "centre", image.channels());
+    let cells = RowCells::declare(b);
+    let parameters = image.declare(b);
     let place = row.start + index.to_float();
-    let number = number([row.cell_x + place.to_int(), row.row], row.seed, period);
+    let number = number(
+        [cells.cell_x + place.to_int(), cells.row],
+        cells.seed,
+        period,
+    );
     let edge = [place + 1.0 - row.mean, row.inverse_sd];
-    sums.after(edge, &[number - row.centre]).results(b);
+    let values = image.of(number, &parameters).into_iter();
+    let d: Vec<Float<'_>> = values
+        .zip(centre)
+        .map(|(value, centre)| value - centre)
+        .collect();
+    sums.after(edge, &d).results(b);
     b.finish(module)
 }
 
@@ -192,13 +222,17 @@ impl<'b> Slice<'b> {
 }
 
 passed! {
-    /// What the rows of a plane have in common: where their window starts, the place, the number at the
-    /// centre, the Gaussian along y, and what x has by it and beyond it.
+    /// What the rows of a plane have in common: where their window starts, and the place.
     struct Rows {
         start: Float,
         x: Float,
         y: Float,
-        centre: Float,
+    }
+}
+
+passed! {
+    /// Which cells these are, the Gaussian along y, and what x has by it and beyond it.
+    struct RowsCells {
         cell_x: Int,
         cell_y: Int,
         seed: Uint,
@@ -209,55 +243,55 @@ passed! {
     }
 }
 
-passed! {
-    /// Sums over the rows of a plane: of the weight, of d, of d², and of both slopes of d.
-    struct RowSums {
-        weight: Float,
-        first: Float,
-        second: Float,
-        slope_x: Float,
-        slope_y: Float,
-    }
-}
-
 /// One row of cells, the body of a fold.
-fn row(module: &mut Module, period: i32) -> FunctionRef {
-    let column = column(module, period);
+fn row(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
+    let column = column(module, period, image);
     let b = &Builder::new("cell_row", "One row of cells.");
     let index = b.uint_param("index");
-    let sums = RowSums::declare(b);
+    let count = image.channels();
+    let sums = Sums::declare(b, count);
     let rows = Rows::declare(b);
+    let centre = channels(b, "centre", count);
+    let cells = RowsCells::declare(b);
+    let parameters = image.declare(b);
     let place = rows.start + index.to_float();
-    let slice = Slice::of(place - rows.y, [rows.sd_y, rows.inverse_sd_y]);
+    let slice = Slice::of(place - rows.y, [cells.sd_y, cells.inverse_sd_y]);
 
     // x given the row.
-    let mean = rows.x + rows.shear * slice.moved;
-    let variance = rows.variance_across + rows.shear.square() * slice.within;
+    let mean = rows.x + cells.shear * slice.moved;
+    let variance = cells.variance_across + cells.shear.square() * slice.within;
     let [sd, inverse_sd] = deviation(variance);
 
     // The cells that count lie within an ellipse.
-    let aside = (slice.moved * rows.inverse_sd_y).square();
+    let aside = (slice.moved * cells.inverse_sd_y).square();
     let left = (aside * (-1.0 / (REACH * REACH)) + 1.0).max(0.0).sqrt();
-    let [start, count] = around(mean, sd * REACH * left);
-    let cells = Row {
+    let [start, columns] = around(mean, sd * REACH * left);
+    let line = Row {
         start,
         mean,
         inverse_sd,
-        centre: rows.centre,
-        cell_x: rows.cell_x,
-        row: rows.cell_y + place.to_int(),
-        seed: rows.seed,
     };
-    let before = Sums::start([start - mean, inverse_sd], 1);
-    let of_row = b.fold(&column, count.to_int().to_uint(), before, cells);
-    let [first, second, slope] = of_row.averages().map(|of| of[0]);
-    let slope = slope * inverse_sd;
-    RowSums {
-        weight: sums.weight + slice.weight,
-        first: sums.first + slice.weight * first,
-        second: sums.second + slice.weight * second,
-        slope_x: sums.slope_x + slice.weight * slope,
-        slope_y: sums.slope_y + slice.slope(rows.inverse_sd_y, first, rows.shear * slope),
+    let of_row = RowCells {
+        cell_x: cells.cell_x,
+        row: cells.cell_y + place.to_int(),
+        seed: cells.seed,
+    };
+    let before = LineSums::start([start - mean, inverse_sd], count);
+    let captures = (line, &centre, of_row, &parameters);
+    let of_row = b.fold(&column, columns.to_int().to_uint(), before, captures);
+    let [first, second, slope] = of_row.averages();
+    let slope: Vec<Float<'_>> = slope.iter().map(|&slope| slope * inverse_sd).collect();
+    let weight = slice.weight;
+    Sums {
+        weight: sums.weight + weight,
+        first: weighted(sums.first, weight, &first),
+        second: weighted(sums.second, weight, &second),
+        slope_x: weighted(sums.slope_x, weight, &slope),
+        slope_y: (sums.slope_y.into_iter().zip(first).zip(slope))
+            .map(|((sum, first), slope)| {
+                sum + slice.slope(cells.inverse_sd_y, first, cells.shear * slope)
+            })
+            .collect(),
     }
     .results(b);
     b.finish(module)
@@ -265,21 +299,23 @@ fn row(module: &mut Module, period: i32) -> FunctionRef {
 
 /// The cells around a place of a plane.
 struct Cells<'b> {
-    /// The number at the centre.
-    centre: Float<'b>,
+    /// The image of the number at the centre.
+    centre: Vec<Float<'b>>,
     /// Where the place is counted from.
     origin: [Int<'b>; 2],
     seed: Uint<'b>,
     /// How much has not faded.
     fade: Float<'b>,
+    /// What the image reads of the graph's inputs.
+    parameters: Vec<Scalar<'b>>,
 }
 
-/// Sums over the cells of a plane, relative to the number at the centre: means of d and of d², and
-/// the slopes of the mean of d.
+/// Sums over the cells of a plane, relative to what is at the centre: means of d and of its products,
+/// and the slopes of the means of d.
 struct Plane<'b> {
-    first: Float<'b>,
-    second: Float<'b>,
-    slopes: Vec2<'b>,
+    first: Vec<Float<'b>>,
+    second: Vec<Float<'b>>,
+    slopes: Vec<Vec2<'b>>,
 }
 
 impl<'b> Plane<'b> {
@@ -294,11 +330,8 @@ impl<'b> Plane<'b> {
         let raised = s_yy + NARROWEST;
         let [sd_y, inverse_sd_y] = deviation(s_yy);
         let [start, count] = window(y, sd_y);
-        let rows = Rows {
-            start,
-            x,
-            y,
-            centre: cells.centre,
+        let rows = Rows { start, x, y };
+        let of_rows = RowsCells {
             cell_x: cells.origin[0],
             cell_y: cells.origin[1],
             seed: cells.seed,
@@ -308,68 +341,33 @@ impl<'b> Plane<'b> {
             // det Σ/Σ₂₂, of what is raised.
             variance_across: ((determinant + s_xx * NARROWEST) / raised).min(s_xx),
         };
-        let sums = b.fold(row, counted(count, cells.fade), RowSums::zero(b), rows);
+        let before = Sums::zero(b, cells.centre.len());
+        let captures = (rows, &cells.centre, of_rows, &cells.parameters);
+        let sums = b.fold(row, counted(count, cells.fade), before, captures);
         let scale = 1.0 / sums.weight.max(1e-6);
+        let scaled = |sums: Vec<Float<'b>>| sums.into_iter().map(|sum| sum * scale).collect();
+        let slopes = sums.slope_x.into_iter().zip(sums.slope_y);
         Self {
-            first: sums.first * scale,
-            second: sums.second * scale,
-            slopes: Vec2([sums.slope_x, sums.slope_y]) * scale,
+            first: scaled(sums.first),
+            second: scaled(sums.second),
+            slopes: slopes.map(|(x, y)| Vec2([x, y]) * scale).collect(),
         }
     }
 }
 
-/// What the cells of a footprint have in common, by their numbers less the centre's.
-struct Filtered<'a, 'b> {
-    centre: Float<'b>,
-    /// The means of d and of d².
-    first: Float<'b>,
-    second: Float<'b>,
-    /// The derivatives of the mean.
-    slopes: &'a [Float<'b>],
-    /// The variance that they give.
-    linear: Float<'b>,
-    /// How much of it has not faded.
-    fade: Float<'b>,
-    /// The probability that two places of the footprint lie in one cell.
-    same: Float<'b>,
-}
-
-impl<'b> Filtered<'_, 'b> {
-    /// The results of a function: the mean, the slopes and what is left of the variance.
-    fn results(&self, b: &'b Builder, mode: Mode) {
-        let &Self { first, fade, .. } = self;
-        // M = ½ + fade (v₀ + m₁ − ½).
-        let mean = (self.centre + first + -0.5) * fade + 0.5;
-        b.result("mean", mean.clamp(0.0, 1.0));
-        let carries = matches!(mode, Mode::Local | Mode::Quad);
-        for (name, &slope) in ["dx", "dy", "dz"].into_iter().zip(self.slopes) {
-            b.result(name, if carries { slope * fade } else { b.float(0.0) });
-        }
-        if !mode.spreads() {
-            return;
-        }
-        let rest = if carries {
-            let variance = self.second - first.square();
-            let near = (variance - self.linear * fade.square()).max(0.0);
-            near * fade + (1.0 - fade) * VARIANCE
-        } else {
-            (1.0 - self.same * fade) * VARIANCE
-        };
-        b.result("rest", rest);
-    }
-}
-
-fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef {
-    let row = mode.filters().then(|| row(module, period));
+fn build(module: &mut Module, mode: Mode, seed: i32, period: i32, image: &Image) -> FunctionRef {
+    let row = mode.filters().then(|| row(module, period, image));
     let b = &Builder::new("cells", "Filtered random cells.");
     let (origin, at) = place::declared::<2>(b);
+    let parameters = image.declare(b);
     let seed = lattice_seed(b, seed, 0xbb67_ae85);
     let inner = [0, 1].map(|axis| origin[axis] + at[axis].floor().to_int());
-    let centre = number(inner, seed, period);
+    let centre = image.of(number(inner, seed, period), &parameters);
     let Some(row) = row else {
-        b.result("mean", centre);
+        b.results(named(&[("mean", centre.len())]), centre);
         return b.finish(module);
     };
+    let ensemble = declared_ensemble(b, image);
     let Spread {
         covariance,
         eigenvalues,
@@ -383,20 +381,23 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef
         origin,
         seed,
         fade: fading(sd),
+        parameters,
     };
     let determinant = eigenvalues[0] * eigenvalues[1];
     let at = [inside(at[0], covariance[0]), inside(at[1], covariance[2])];
     let plane = Plane::of(&row, at, (covariance, determinant), &cells);
     let [along, across] = eigenvalues.map(coincidence);
+    let linear = pairs(plane.slopes.len())
+        .map(|(i, k)| plane.slopes[i].dot(covariance.times(plane.slopes[k])));
     let filtered = Filtered {
-        centre,
+        linear: linear.collect(),
+        centre: cells.centre,
         first: plane.first,
         second: plane.second,
-        slopes: &*plane.slopes,
-        linear: plane.slopes.dot(covariance.times(plane.slopes)),
+        slopes: plane.slopes.iter().map(|slopes| slopes.to_vec()).collect(),
         fade: cells.fade,
         same: along * across,
     };
-    filtered.results(b, mode);
+    filtered.results(b, mode, ensemble.as_ref());
     b.finish(module)
 }

@@ -54,6 +54,10 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
     let seed = lower.integer(node, "seed");
     let period = lower.integer(node, "period");
-    let field = cell::filtered(lower, &position, seed, period);
-    vec![field.at(lower, &position).with_range([0.0, 1.0])]
+    cell::filtered(lower, &position, seed, period)
+}
+
+/// Every cell has a number.
+pub(super) fn things(_: &Node) -> bool {
+    true
 }

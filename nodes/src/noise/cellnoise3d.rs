@@ -58,6 +58,10 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = place(lower, node);
     let seed = lower.integer(node, "seed");
     let period = lower.integer(node, "period");
-    let signal = space::filtered(lower, &position, seed, period);
-    vec![signal.with_range([0.0, 1.0])]
+    space::filtered(lower, &position, seed, period)
+}
+
+/// Every cell has a number.
+pub(super) fn things(_: &Node) -> bool {
+    true
 }

@@ -1,12 +1,12 @@
 //! `randomcolor`: a random colour for each number.
 
 use crate::color::hsv::to_rgb;
-use crate::noise::cell::line::{Ensemble, Line, filtered, pairs};
+use crate::noise::cell::line::{Line, filtered};
 use crate::noise::cell::{VARIANCE, lattice_seed, number};
 use crate::noise::randomfloat::{IN, place};
 use crate::noise::source::SEED;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand};
-use mipless_codegen::{Bundle, Lower};
+use mipless_codegen::{Bundle, Ensemble, Lower, pairs};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
     Reach, Type,

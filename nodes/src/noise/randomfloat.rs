@@ -1,12 +1,12 @@
 //! `randomfloat`: a random number for each number.
 
 use crate::componentwise::{exposed, product, sum};
-use crate::noise::cell::line::{Ensemble, Line, filtered};
+use crate::noise::cell::line::{Line, filtered};
 use crate::noise::cell::{VARIANCE, lattice_seed, number};
 use crate::noise::source::SEED;
 use crate::port;
 use mipless_codegen::moments::Signal;
-use mipless_codegen::{Bundle, Lower};
+use mipless_codegen::{Bundle, Ensemble, Lower};
 use mipless_graph::{
     Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach, Type,
 };

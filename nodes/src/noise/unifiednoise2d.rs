@@ -133,10 +133,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
 fn raw<'b>(lower: &mut Lower<'_, 'b>, node: &Node, position: &[Signal<'b>]) -> Signal<'b> {
     let seed = lower.integer(node, "seed");
     match lower.choice(node, "type") {
-        "cell" => {
-            let field = cell::filtered(lower, position, seed, 0);
-            field.at(lower, position).with_range([0.0, 1.0])
-        }
+        "cell" => cell::filtered(lower, position, seed, 0).swap_remove(0),
         "worley" => {
             let worley = Worley {
                 jitter: lower.float(node, "jitter"),
@@ -145,9 +142,7 @@ fn raw<'b>(lower: &mut Lower<'_, 'b>, node: &Node, position: &[Signal<'b>]) -> S
                 period: 0,
                 seed,
             };
-            let farthest = if worley.solid { 1.0 } else { 3.6 };
-            let field = worley::filtered(lower, position, worley);
-            field.at(lower, position).with_range([0.0, farthest])
+            worley::filtered(lower, position, worley).swap_remove(0)
         }
         kind => {
             let (octaves, factor, pivot) = match kind {

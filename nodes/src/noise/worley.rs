@@ -4,7 +4,11 @@
 //! and a hexagon of twice the footprint) share one search: the points near them are drawn once. Small
 //! footprints are integrated; larger ones alias, so their average is drawn towards the mean of the
 //! noise by the regression of the true average on it, whose slope was measured by size (`shape`).
+//!
+//! What follows the numbers of regions is summed over the regions along lines through the footprint
+//! instead (`lines`).
 
+mod lines;
 mod shape;
 mod taps;
 
@@ -12,11 +16,11 @@ pub(crate) use shape::{Output, Worley};
 
 use super::cell::lattice_seed;
 use super::cell::place::{called, declared, declared_spread, field, window_start};
-use super::field::{Field, Spread};
+use super::field::Spread;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
-use taps::{NODES, Nearest, Rows, row};
+use taps::{Kept, NODES, Nearest, Rows, row};
 
 /// Windows of cells around one place: every point within 1.5 cells is found.
 const CELLS: f32 = 4.0;
@@ -25,31 +29,35 @@ const CELLS: f32 = 4.0;
 /// fade.
 const WIDEST: [f32; 2] = [1.2, 1.5];
 
-/// The filtered noise at a position in cells.
+/// The filtered noise at a position in cells, for each component of the image that is asked for.
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
     worley: Worley,
-) -> Field<'b> {
+) -> Vec<Signal<'b>> {
     let mode = lower.mode();
     let spread = Spread::of(position);
     lower.source_footprint(spread.eigenvalues[0].sqrt());
+    if !lower.image().0.is_identity() {
+        return lines::filtered(lower, position, &spread, worley);
+    }
     let key = format!("worley {mode:?} {worley:?}");
     let function = lower.function(&key, |module| build(module, mode, worley));
     let results = called(lower, &function, (position, &spread), ());
-    field(&results[..results.len().min(3)], results.get(3).copied())
+    let field = field(&results[..results.len().min(3)], results.get(3).copied());
+    vec![field.at(lower, position).with_range(worley.range())]
 }
 
-/// The values at places around (x, y), `reach` = how far they are spread along each axis; of none
+/// What is nearest to places around (x, y), `reach` = how far they are spread along each axis; nothing
 /// unless the condition holds.
 fn search<'b>(
     row: &FunctionRef,
-    worley: Worley,
+    (worley, kept): (Worley, Kept),
     places: &[Vec2<'b>],
     ([cell_x, cell_y], [x, y]): ([Int<'b>; 2], [Float<'b>; 2]),
     reach: [Float<'b>; 2],
     any: Bool<'b>,
-) -> Vec<Float<'b>> {
+) -> Vec<Nearest<'b>> {
     let b = x.builder();
     let counts = reach.map(|reach| CELLS - (reach * -2.0).floor());
     let [columns, rows] = counts.map(|count| count.to_int().to_uint());
@@ -61,30 +69,27 @@ fn search<'b>(
         cell_y,
         seed: lattice_seed(b, worley.seed, 0xa54f_f53a),
     };
-    let before = vec![Nearest::none(b, worley); places.len()];
-    let nearest = b.fold(row, any.select(rows, 0u32), before, (shared, places));
-    nearest
-        .iter()
-        .map(|nearest| nearest.value(worley))
-        .collect()
+    let before = vec![Nearest::none(b, kept); places.len()];
+    b.fold(row, any.select(rows, 0u32), before, (shared, places))
 }
 
 fn build(module: &mut Module, mode: Mode, worley: Worley) -> FunctionRef {
     let count = if mode.filters() { NODES.len() } else { 1 };
-    let row = row(module, worley, count);
+    let kept = Kept::of(worley);
+    let row = row(module, worley, kept, count);
     let b = &Builder::new("worley", "Distances to random points over a footprint.");
     let centre = declared::<2>(b);
     let place = Vec2(centre.1);
     if !mode.filters() {
         let found = search(
             &row,
-            worley,
+            (worley, kept),
             &[place],
             centre,
             [b.float(0.0); 2],
             b.literal(true),
         );
-        b.result("mean", found[0]);
+        b.result("mean", found[0].value(worley));
         return b.finish(module);
     }
     let Spread {
@@ -116,7 +121,8 @@ fn build(module: &mut Module, mode: Mode, worley: Worley) -> FunctionRef {
         let sd = sd.max(floor).min(WIDEST[1]);
         sd + sd
     });
-    let found = search(&row, worley, &places, centre, reach, fade.gt(0.0));
+    let found = search(&row, (worley, kept), &places, centre, reach, fade.gt(0.0));
+    let found: Vec<Float<'_>> = found.iter().map(|nearest| nearest.value(worley)).collect();
 
     // Deviations from the centre keep their digits.
     let [mut m1, mut m2, mut along, mut across] = [b.float(0.0); 4];

@@ -6,7 +6,7 @@ use crate::noise::worley::{self, Output, Worley};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
+    Behaviour, Category, Doc, InputView, Literal, Node, NodeSpec, OutputType, Range, Reach, Type,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -98,12 +98,14 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         period: lower.integer(node, "period"),
         seed: lower.integer(node, "seed"),
     };
-    let field = worley::filtered(lower, &position, worley);
-    let range = match (worley.solid, worley.output) {
-        (true, Output::Difference) => [-1.0, 1.0],
-        (true, _) => [0.0, 1.0],
-        // No point of the window is farther than its corner.
-        (false, _) => [0.0, 3.6],
+    worley::filtered(lower, &position, worley)
+}
+
+/// The regions of the nearest points have numbers.
+pub(super) fn things(node: &Node) -> bool {
+    let chosen = |port: &str| match node.literal(port) {
+        Literal::Text(text) => text.as_str(),
+        _ => "",
     };
-    vec![field.at(lower, &position).with_range(range)]
+    chosen("style") == "solid" && chosen("output") == "F1"
 }

@@ -10,7 +10,7 @@ use crate::pattern::unless::pattern_unless;
 use crate::pattern::wall::Wall;
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
+use mipless_graph::{Category, Doc, Literal, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "brick",
@@ -87,6 +87,11 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
+/// Every brick has a number.
+pub(super) fn things(node: &Node) -> bool {
+    matches!(node.literal("output"), Literal::Text(text) if text == "random")
+}
+
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let bond = Bond::named(lower.choice(node, "bond"));
     let texcoord = lower.bundle(node, "texcoord");
@@ -97,7 +102,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         ["row_offset", "mortar", "bevel"].map(|port| lower.number(node, port));
     if lower.choice(node, "output") == "random" {
         let seed = lower.integer(node, "seed");
-        return vec![numbered(lower, &position, bond, offset, seed)];
+        return numbered(lower, &position, bond, offset, seed);
     }
     let [columns, rows] = counts.map(|count| count.flat_mean().abs());
     let rows = rows.max(1e-6);

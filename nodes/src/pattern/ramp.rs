@@ -46,10 +46,7 @@ macro_rules! ramps {
                 class: |inputs| pattern_unless(inputs, &[$from, $to]),
                 example: concat!("{\n  \"version\": 1,\n  \"name\": \"", stringify!($node), "_example\",\n  \"nodes\": {\n    \"", stringify!($node), "\": { \"type\": \"", stringify!($node), "\", \"inputs\": { \"", $from, "\": \"#20303c\", \"", $to, "\": \"#e8c27a\" } }\n  },\n  \"outputs\": { \"out\": { \"node\": \"", stringify!($node), "\" } }\n}"),
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| along(lower, node, $axis, [$from, $to]),
-            }
+            NodeDef::new(&SPEC, |lower, node| along(lower, node, $axis, [$from, $to]))
         }
     )*};
 }

@@ -1,9 +1,9 @@
-//! A random number for each brick of a bond, filtered.
+//! A random number for each brick of a bond, filtered, or any function of the numbers.
 //!
 //! Bricks with half of the joints around them cover the plane: the mean is ½ + Σ w (r − ½), with w
 //! the share of the footprint that a brick holds. Narrow footprints sum the bricks that they reach,
 //! wide ones the tiles of the bricks. Where that would be too many the sum fades to ½, whose share of
-//! the variance is that of the numbers.
+//! the variance is that of the numbers. Of an image the mean over all numbers takes the place of ½.
 
 mod near;
 mod wide;
@@ -12,9 +12,12 @@ use super::bond::{Bond, Brick};
 use super::separable::{orders, rest};
 use super::taps::Taps;
 use crate::noise::field::{Field, Spread};
-use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Sym2, Uint, Vec2};
+use crate::noise::things::{attach, channels, ensemble, named};
+use mipless_codegen::ir::{
+    Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Sym2, Uint, Vec2,
+};
 use mipless_codegen::moments::{Mode, Signal};
+use mipless_codegen::{Image, Lower, pairs};
 
 /// The variance of a uniform number in [0, 1].
 const VARIANCE: f32 = 1.0 / 12.0;
@@ -33,20 +36,99 @@ const MOST: f32 = 16.0;
 /// What tells the bricks of a cell apart, times their numbers.
 const BRICK: u32 = 0x85eb_ca6b;
 
-/// Sums of w(r − ½) and derivatives, and of w(r − ½)² and w.
-const SUMS: [&str; 8] = ["value", "dx", "dy", "dxx", "dxy", "dyy", "square", "weight"];
+/// A mean and its derivatives by the place.
+const ORDERS: [&str; 6] = ["value", "dx", "dy", "dxx", "dxy", "dyy"];
 
-/// A random number in [0, 1] of the brick at a position in unit cells; `offset` as of the bond,
-/// `seed` chooses among walls.
+/// The names of lists of numbers for each component of an image, one component after the other, and
+/// those for each pair of components, a list after the other; then of the weight.
+fn names(image: &Image, of_each: &[&str], of_pairs: &[&str]) -> Vec<String> {
+    let count = image.channels();
+    let each = (0..count).flat_map(|i| {
+        of_each.iter().map(move |name| match count {
+            1 => (*name).to_owned(),
+            _ => format!("{name}_{i}"),
+        })
+    });
+    let pairs = of_pairs.iter().map(|&name| (name, pairs(count).count()));
+    let rest = named(&pairs.chain([("weight", 1)]).collect::<Vec<_>>());
+    each.chain(rest).collect()
+}
+
+/// Names of the sums of w(r − ½) and derivatives, and of w(r − ½)² and w.
+fn sums(image: &Image) -> Vec<String> {
+    names(image, &ORDERS, &["square"])
+}
+
+/// Parameters of these names.
+fn declared<'b>(b: &'b Builder, names: &[String]) -> Vec<Float<'b>> {
+    names.iter().map(|name| b.float_param(name)).collect()
+}
+
+/// What is summed of the numbers of bricks: an image less what it is over all of them.
+struct Summed<'a, 'c> {
+    image: &'a Image,
+    /// What it reads of the graph's inputs.
+    parameters: Vec<Scalar<'c>>,
+    /// What it is over all; of the number itself it is known.
+    far: Vec<Float<'c>>,
+}
+
+impl<'a, 'c> Summed<'a, 'c> {
+    /// As parameters of a function.
+    fn declare(b: &'c Builder, image: &'a Image) -> Self {
+        let count = if image.is_identity() {
+            0
+        } else {
+            image.channels()
+        };
+        Self {
+            image,
+            far: channels(b, "far", count),
+            parameters: image.declare(b),
+        }
+    }
+
+    /// Of the brick's cell along x and of what its row shares.
+    fn of(&self, cell: Int<'c>, row: Uint<'c>) -> Vec<Float<'c>> {
+        if self.image.is_identity() {
+            return vec![random(cell, row)];
+        }
+        let values = self.image.of(random(cell, row) + 0.5, &self.parameters);
+        values
+            .iter()
+            .zip(&self.far)
+            .map(|(&value, &far)| value - far)
+            .collect()
+    }
+}
+
+impl<'c> Scalars<'c> for Summed<'_, 'c> {
+    fn each(&self, visit: &mut dyn FnMut(Scalar<'c>)) {
+        self.far.each(visit);
+        self.parameters.each(visit);
+    }
+
+    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'c>) -> Self {
+        Self {
+            image: self.image,
+            far: self.far.replaced(next),
+            parameters: self.parameters.replaced(next),
+        }
+    }
+}
+
+/// A random number in [0, 1] of the brick at a position in unit cells, or the image of it that is asked
+/// for; `offset` as of the bond, `seed` chooses among walls.
 pub(crate) fn numbered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>; 2],
     bond: Bond,
     offset: Float<'b>,
     seed: i32,
-) -> Signal<'b> {
+) -> Vec<Signal<'b>> {
     let mode = lower.mode();
     let b = lower.b();
+    let (image, parameters) = lower.image();
     let places = [0, 1].map(|i| position[i].place());
     let (cells, place) = (places.map(|(cell, _)| cell), places.map(|(_, rest)| rest));
     let seed = b.uint(seed as u32);
@@ -59,13 +141,27 @@ pub(crate) fn numbered<'b>(
             point_function(module, bond, fixed)
         });
         let value = b.call(&function, (place, cells, seed, live))[0];
-        return Signal::certain(value).with_range([0.0, 1.0]);
+        if image.is_identity() {
+            return vec![Signal::certain(value).with_range([0.0, 1.0])];
+        }
+        let values = image.of(value, &parameters).into_iter();
+        return values.map(Signal::certain).collect();
     }
     let spread = Spread::of(position);
-    let tap = lower.function(&key, |module| near::tap(module, bond, fixed));
+    let key = format!("{key} {}", image.key());
+    let tap = lower.function(&key, |module| near::tap(module, bond, fixed, &image));
     let tiles = lower.function(&format!("{key} wide"), |module| {
-        wide::function(module, bond, fixed)
+        wide::function(module, bond, fixed, &image)
     });
+    // Each is counted from the mean of all, wherever the footprint is.
+    let ensemble = ensemble(lower, &image, || b.literal(true));
+    let summed = Summed {
+        image: &image,
+        parameters,
+        far: ensemble
+            .as_ref()
+            .map_or_else(Vec::new, |all| all.means.clone()),
+    };
 
     // Bricks one by one, or as Gaussians: the other sums are 0.
     let [xx, xy, yy] = *spread.covariance;
@@ -74,30 +170,72 @@ pub(crate) fn numbered<'b>(
     let taps = Taps::of(spread.covariance);
     let (parts, is_wide) = wide::parts(bond, spread.covariance, &taps);
     let count = is_wide.select(0, taps.count);
-    let captures = (place, taps.nodes, kept, cells, seed, live);
-    let near = b.fold(&tap, count, [b.float(0.0); SUMS.len() + 1], captures);
+    let captures = (place, taps.nodes, kept, cells, seed, live, &summed);
+    let none = vec![b.float(0.0); sums(&image).len() + 1];
+    let near = b.fold(&tap, count, none, captures);
     let kept = is_wide.select(kept, 0.0);
-    let arguments = (place, spread.covariance, parts, cells, seed, kept, live);
+    let arguments = (
+        place,
+        spread.covariance,
+        parts,
+        cells,
+        seed,
+        kept,
+        live,
+        &summed,
+    );
     let far = b.call(&tiles, arguments);
     // Of no nodes, everything is 0.
     let inverse = 1.0 / near[0].max(1e-30);
-    let sums: [Float<'b>; SUMS.len()] = std::array::from_fn(|i| near[i + 1] * inverse + far[i]);
+    let sums: Vec<Float<'b>> = (far.iter().enumerate())
+        .map(|(i, &far)| near[i + 1] * inverse + far)
+        .collect();
+    let (of_each, others) = sums.split_at(ORDERS.len() * image.channels());
+    let (squares, weight) = others.split_at(others.len() - 1);
 
     let orders = orders(mode);
-    let at = |i: usize| if i < orders { sums[i] } else { b.float(0.0) };
-    let centred = sums[0].clamp(-0.5, 0.5);
-    let mut field = Field {
-        mean: centred + 0.5,
-        gradient: Vec2([1, 2].map(at)),
-        hessian: Sym2([3, 4, 5].map(at)),
-        rest: b.float(0.0),
-    };
+    let at = |i: usize, sums: &[Float<'b>]| if i < orders { sums[i] } else { b.float(0.0) };
+    let means: Vec<Float<'b>> = (of_each.chunks(ORDERS.len()))
+        .map(|sums| match image.is_identity() {
+            true => sums[0].clamp(-0.5, 0.5),
+            false => sums[0],
+        })
+        .collect();
+    let mut fields: Vec<Field<'b>> = (of_each.chunks(ORDERS.len()).zip(&means).enumerate())
+        .map(|(i, (sums, &centred))| Field {
+            mean: match &ensemble {
+                None => centred + 0.5,
+                Some(ensemble) => centred + ensemble.means[i],
+            },
+            gradient: Vec2([1, 2].map(|i| at(i, sums))),
+            hessian: Sym2([3, 4, 5].map(|i| at(i, sums))),
+            rest: b.float(0.0),
+        })
+        .collect();
+    let mut left = Vec::new();
     if mode.spreads() {
-        let lost = (1.0 - sums[7]).max(0.0) * VARIANCE;
-        let variance = sums[6] + lost - centred.square();
-        field.rest = rest(&mut field, &spread, variance);
+        for ((i, k), (place, &square)) in pairs(means.len()).zip(squares.iter().enumerate()) {
+            let lost = (1.0 - weight[0]).max(0.0);
+            let lost = match &ensemble {
+                None => lost * VARIANCE,
+                Some(ensemble) => lost * ensemble.covariance[place],
+            };
+            if i == k {
+                let variance = square + lost - means[i].square();
+                left.push(rest(&mut fields[i], &spread, variance));
+            } else {
+                let linear = fields[i]
+                    .gradient
+                    .dot(spread.covariance.times(fields[k].gradient));
+                left.push(square + lost - means[i] * means[k] - linear);
+            }
+        }
     }
-    field.at(lower, position).with_range([0.0, 1.0])
+    let mut signals: Vec<Signal<'b>> = (fields.iter())
+        .map(|field| field.at(lower, position))
+        .collect();
+    attach(lower, &image, &mut signals, &left);
+    signals
 }
 
 /// What the bricks of a row of cells share of their numbers; `which` is the brick's number times

@@ -68,10 +68,7 @@ macro_rules! figures {
                 class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset"]),
                 example: concat!("{\n  \"version\": 1,\n  \"name\": \"", stringify!($node), "_example\",\n  \"nodes\": {\n    \"", stringify!($node), "\": { \"type\": \"", stringify!($node), "\", \"inputs\": { \"uvtiling\": [7, 7], \"size\": 0.8, \"staggered\": true } }\n  },\n  \"outputs\": { \"out\": { \"node\": \"", stringify!($node), "\" } }\n}"),
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| tiles(lower, node, $tile),
-            }
+            NodeDef::new(&SPEC, |lower, node| tiles(lower, node, $tile))
         }
     )*};
 }

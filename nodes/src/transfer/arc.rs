@@ -44,14 +44,11 @@ macro_rules! arcs {
     ""#, stringify!($node), r#"": {"type": ""#, stringify!($node), r#"", "inputs": {"in": {"node": "less"}}}
 "#) },
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| {
-                    let $b = lower.b();
-                    let curve = $curve;
-                    unary(lower, node, "in", |lower, x| transfer(lower, x, &curve))
-                },
-            }
+            NodeDef::new(&SPEC, |lower, node| {
+                let $b = lower.b();
+                let curve = $curve;
+                unary(lower, node, "in", |lower, x| transfer(lower, x, &curve))
+            })
         }
     )*};
 }

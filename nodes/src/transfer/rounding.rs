@@ -40,7 +40,7 @@ macro_rules! roundings {
     ""#, stringify!($node), r#"": {"type": ""#, stringify!($node), r#"", "inputs": {"in": {"node": "six"}}}
 "#) },
             };
-            NodeDef { spec: &SPEC, lower: |lower, node| unary(lower, node, "in", $rule) }
+            NodeDef::new(&SPEC, |lower, node| unary(lower, node, "in", $rule))
         }
     )*};
 }

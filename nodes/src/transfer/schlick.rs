@@ -53,20 +53,17 @@ macro_rules! curves {
     "wave": {"type": "sin", "inputs": {"in": {"node": "turns"}}},
 "#, $example) },
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| {
-                    let $value = lower.number(node, stringify!($node));
-                    let bend = bend($bias);
-                    let curve = Curve {
-                        function: move |x| $function(bend, limited(x)),
-                        kinks: $kinks.map(|at: f32| bend.literal(at)).to_vec(),
-                        flat: [0.0, 1.0].map(|end| Some(bend.literal(end))),
-                        range: [0.0, 1.0],
-                    };
-                    unary(lower, node, "in", |lower, x| transfer(lower, x, &curve))
-                },
-            }
+            NodeDef::new(&SPEC, |lower, node| {
+                let $value = lower.number(node, stringify!($node));
+                let bend = bend($bias);
+                let curve = Curve {
+                    function: move |x| $function(bend, limited(x)),
+                    kinks: $kinks.map(|at: f32| bend.literal(at)).to_vec(),
+                    flat: [0.0, 1.0].map(|end| Some(bend.literal(end))),
+                    range: [0.0, 1.0],
+                };
+                unary(lower, node, "in", |lower, x| transfer(lower, x, &curve))
+            })
         }
     )*};
 }

@@ -40,12 +40,9 @@ macro_rules! sines {
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), $example },
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| {
-                    unary(lower, node, "in", |lower, x| transfer(lower, x, &Sine { phase: $phase }))
-                },
-            }
+            NodeDef::new(&SPEC, |lower, node| {
+                unary(lower, node, "in", |lower, x| transfer(lower, x, &Sine { phase: $phase }))
+            })
         }
     )*};
 }

@@ -42,13 +42,10 @@ macro_rules! waves {
     ""#, stringify!($node), r#"": {"type": ""#, stringify!($node), r#"", "inputs": {"in": {"node": "six"}}}
 "#) },
             };
-            NodeDef {
-                spec: &SPEC,
-                lower: |lower, node| {
-                    let wave = $wave;
-                    unary(lower, node, "in", |lower, x| transfer(lower, x, &wave))
-                },
-            }
+            NodeDef::new(&SPEC, |lower, node| {
+                let wave = $wave;
+                unary(lower, node, "in", |lower, x| transfer(lower, x, &wave))
+            })
         }
     )*};
 }

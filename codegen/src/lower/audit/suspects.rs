@@ -56,8 +56,9 @@ pub(super) fn beginnings(
     facts: &Facts,
     steady: &[bool],
 ) -> FxHashMap<usize, Sampling> {
+    let uses = facts.mixtures.live(graph);
     let live: Vec<usize> = (0..graph.nodes.len())
-        .filter(|&index| facts.live[index] > 0)
+        .filter(|&index| uses[index] > 0)
         .collect();
     let numbers = |ty: Type| !matches!(ty, Type::String | Type::Filename);
     if live.len() > SEARCHED {
@@ -74,6 +75,7 @@ pub(super) fn beginnings(
         .collect();
     let facts = Facts {
         repeated: facts.repeated.clone(),
+        mixtures: facts.mixtures.clone(),
         ..Facts::of(&every)
     };
     let facts = &facts;
@@ -104,8 +106,8 @@ pub(super) fn beginnings(
     (every.outputs.iter().enumerate())
         .filter(|(_, output)| is_bad(output.node))
         .filter(|(_, output)| {
-            let mut inputs = graph.node(output.node).inputs.iter();
-            !inputs.any(|input| matches!(input.source, Source::Node(id) if is_bad(id)))
+            let mut reads = facts.mixtures.reads(graph, output.node.index());
+            !reads.any(is_bad)
         })
         .map(|(index, output)| {
             let node = output.node.index();

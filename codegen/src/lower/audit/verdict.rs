@@ -16,7 +16,7 @@ const BETTER: f64 = 0.7;
 pub(super) struct Verdict {
     worse: usize,
     off: usize,
-    square: f64,
+    pub(super) square: f64,
 }
 
 impl Verdict {

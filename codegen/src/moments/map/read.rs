@@ -54,9 +54,17 @@ pub(super) fn bilinear(
 }
 
 /// The two levels that a σ lies between, as (intervals, first) each, and the coarser one's share.
-struct Levels<'b> {
-    rows: [[Float<'b>; 2]; 2],
-    share: Float<'b>,
+pub(super) struct Levels<'b> {
+    pub(super) rows: [[Float<'b>; 2]; 2],
+    pub(super) share: Float<'b>,
+}
+
+/// A footprint in domains: where it is, the direction of its major axis, and the variances along that
+/// and across it.
+pub(super) struct Axes<'b> {
+    pub(super) centre: Vec2<'b>,
+    pub(super) direction: Vec2<'b>,
+    pub(super) variances: [Float<'b>; 2],
 }
 
 /// Σ as an isotropic part and taps: s, and for each tap its place, weight and distance from the
@@ -96,22 +104,26 @@ impl Map {
         let [width, height] = self.domain.widths();
         // What is stored is relative to σ.
         let by_s = 1.0 / taps.s;
-        (0..self.packing.components())
+        let components = 0..self.packing.components();
+        let tapped: Vec<Float<'b>> = (components.clone())
+            .map(|i| taps.weighted(|k| means[k][i]))
+            .collect();
+        let long = self.long(mean, covariance, tapped.clone());
+        components
             .map(|i| {
                 let slopes = |k: usize| Vec2([slopes_x[k][i], slopes_y[k][i]]) * by_s;
-                let tapped = taps.weighted(|k| means[k][i]);
                 let all = Vec2([0, 1].map(|axis| taps.weighted(|k| slopes(k)[axis])));
                 // The residual T − E[T] − α·(x − m), split at the taps: within each, D and the
                 // slope beyond α; between them, the means beyond the line.
                 let distortion = taps.weighted(|k| {
                     let [x, y] = *((slopes(k) - all) * taps.s * taps.shrink);
                     let line = taps.places[k].offset.dot(all);
-                    let above = (means[k][i] - tapped - line) * taps.shrink;
+                    let above = (means[k][i] - tapped[i] - line) * taps.shrink;
                     (roots[k][i] * taps.shrink).square() + x.square() + y.square() + above.square()
                 });
-                let near = lerp(points[i], tapped, taps.shrink);
+                let near = lerp(points[i], long[i], taps.shrink);
                 Moments {
-                    mean: taps.below.select(near, tapped),
+                    mean: taps.below.select(near, long[i]),
                     slopes: Vec2([all[0] * (1.0 / width), all[1] * (1.0 / height)]),
                     distortion,
                 }
@@ -143,27 +155,37 @@ impl Map {
         covariance * (WIDEST / most)
     }
 
-    fn taps<'b>(&self, mean: Vec2<'b>, covariance: Sym2<'b>) -> Taps<'b> {
+    pub(super) fn axes<'b>(&self, mean: Vec2<'b>, covariance: Sym2<'b>) -> Axes<'b> {
         let covariance = self.relative(covariance);
         let (Sym2([xx, xy, yy]), [more, less]) = (covariance, covariance.eigenvalues());
-        let finest = FINEST as f32;
-        let isotropic = less.max(more * (ASPECT * ASPECT)).max(finest * finest);
-        let along = (more - isotropic).max(0.0).sqrt();
-
         // v = (√½(1 + cos 2θ), ±√½(1 − cos 2θ)); where Σ is isotropic there is no direction and no
         // distance either.
         let cosine = ((xx - yy) / (more - less + 1e-30)).clamp(-1.0, 1.0);
         let vx = (cosine * 0.5 + 0.5).sqrt();
         let vy = (0.5 - cosine * 0.5).sqrt();
-        let axis = Vec2([vx, xy.lt(0.0).select(-vy, vy)]) * along;
-
-        let centre: [Float<'b>; 2] = std::array::from_fn(|i| {
+        let centre = std::array::from_fn(|i| {
             let [low, high] = self.domain.bounds[i];
             (mean[i] + -low) * (1.0 / (high - low))
         });
+        Axes {
+            centre: Vec2(centre),
+            direction: Vec2([vx, xy.lt(0.0).select(-vy, vy)]),
+            variances: [more, less],
+        }
+    }
+
+    fn taps<'b>(&self, mean: Vec2<'b>, covariance: Sym2<'b>) -> Taps<'b> {
+        let Axes {
+            centre,
+            direction,
+            variances: [more, less],
+        } = self.axes(mean, covariance);
+        let finest = FINEST as f32;
+        let isotropic = less.max(more * (ASPECT * ASPECT)).max(finest * finest);
+        let axis = direction * (more - isotropic).max(0.0).sqrt();
         let places = rule().map(|[x, weight]| {
             let offset = axis * x as f32;
-            let place = (Vec2(centre) + offset).map(|at| {
+            let place = (centre + offset).map(|at| {
                 if self.domain.periodic {
                     at - at.floor()
                 } else {
@@ -185,7 +207,7 @@ impl Map {
         }
     }
 
-    fn levels<'b>(&self, s: Float<'b>) -> Levels<'b> {
+    pub(super) fn levels<'b>(&self, s: Float<'b>) -> Levels<'b> {
         let (finest, second) = (FINEST as f32, SECOND as f32);
         let s = s.clamp(finest, super::sigma(LEVELS - 1) as f32);
         // Levels above the second; the first is two octaves below it.

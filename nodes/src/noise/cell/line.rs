@@ -4,20 +4,12 @@
 //! the cells of a window, as in the plane; what does not fit fades to what cells have on average.
 
 use super::{coincidence, counted, deviation, fading, report, window};
-use mipless_codegen::Lower;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Scalar, Scalars};
 use mipless_codegen::moments::{Mode, Normal, Signal};
+use mipless_codegen::{Ensemble, Lower, pairs};
 
 /// The numbers of a cell of a line, from its index and the parameters.
 pub(crate) type Numbers<'a> = &'a dyn for<'c> Fn(Int<'c>, &[Float<'c>]) -> Vec<Float<'c>>;
-
-/// What the numbers of all cells have in common.
-pub(crate) struct Ensemble<'b> {
-    /// Their means.
-    pub(crate) means: Vec<Float<'b>>,
-    /// The rows of the lower triangle of their covariance.
-    pub(crate) covariance: Vec<Float<'b>>,
-}
 
 /// What stands in the cells of a line.
 pub(crate) struct Line<'a, 'b> {
@@ -29,11 +21,6 @@ pub(crate) struct Line<'a, 'b> {
     pub(crate) numbers: Numbers<'a>,
     /// Those of all cells, where the condition says that they are wanted.
     pub(crate) ensemble: &'a dyn Fn(&mut Lower<'_, 'b>, Bool<'b>) -> Ensemble<'b>,
-}
-
-/// Pairs of channels, in the order of the lower triangle of a matrix.
-pub(crate) fn pairs(channels: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..channels).flat_map(|i| (0..=i).map(move |k| (i, k)))
 }
 
 /// Sums over the cells of a line, d being the numbers less those at the centre: the state of a fold.

@@ -1,15 +1,11 @@
-//! Structs of scalars that pass the boundaries of functions: what a fold's body takes and gives.
+//! Structs of scalars that pass the boundaries of functions: what a fold's body takes.
 
 use mipless_codegen::ir::{Builder, Scalars};
 
-/// What passes as parameters and results that have the names of its fields, in their order.
+/// What passes as parameters that have the names of its fields, in their order.
 pub(crate) trait Passed<'b>: Scalars<'b> {
     /// The parameters of a function that takes it over.
     fn declare(b: &'b Builder) -> Self;
-    /// All of it 0, before the first turn of a fold.
-    fn zero(b: &'b Builder) -> Self;
-    /// Gives it as results.
-    fn results(&self, b: &'b Builder);
 }
 
 /// Defines a struct of scalars that implements [`Passed`].
@@ -36,14 +32,6 @@ macro_rules! passed {
         impl<'b> $crate::noise::cell::passed::Passed<'b> for $name<'b> {
             fn declare(b: &'b mipless_codegen::ir::Builder) -> Self {
                 Self { $($field: b.param(stringify!($field)),)* }
-            }
-
-            fn zero(b: &'b mipless_codegen::ir::Builder) -> Self {
-                Self { $($field: b.literal(Default::default()),)* }
-            }
-
-            fn results(&self, b: &'b mipless_codegen::ir::Builder) {
-                $(b.result(stringify!($field), self.$field);)*
             }
         }
     };

@@ -6,26 +6,32 @@
 use super::passed::{Passed, passed};
 use super::place::declared;
 use super::{
-    Cells, Filtered, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside,
-    lattice_seed, number, report, row, window,
+    Cells, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside, lattice_seed,
+    number, report, row, window,
 };
 use crate::noise::period::wrapped;
+use crate::noise::things::{
+    Filtered, Sums, attach, channels, declared_ensemble, ensemble, named, weighted,
+};
 use crate::noise::volume::{Spread, at};
-use mipless_codegen::Lower;
-use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Sym2, Uint, Vec2, dot};
+use mipless_codegen::ir::{
+    Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Sym2, Uint, Vec2, dot,
+};
 use mipless_codegen::moments::{Mode, Signal};
+use mipless_codegen::{Image, Lower, pairs};
 
 /// How far inside its cell the origin lies along each axis: more than the rounding of a place, and less
 /// than anyone sees.
 const INSIDE: f32 = 1.0 / 1024.0;
 
-/// The filtered cells at a position in space, in cells.
+/// The filtered cells at a position in space, in cells, for each component of the image that is asked
+/// for.
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
     seed: i32,
     period: i32,
-) -> Signal<'b> {
+) -> Vec<Signal<'b>> {
     let (mode, b) = (lower.mode(), lower.b());
     // A surface at 0, as every flat view is, must not lie on faces of cells: half of a footprint would be
     // in another layer at every size.
@@ -33,22 +39,31 @@ pub(crate) fn filtered<'b>(
     let position = &position[..];
     let spread = Spread::of(position, 1.0);
     report(lower, spread.size());
-    let key = format!("cells in space {mode:?} {seed} {period}");
-    let function = lower.function(&key, |module| build(module, mode, seed, period));
+    let (image, parameters) = lower.image();
+    let key = format!("cells in space {mode:?} {seed} {period} {}", image.key());
+    let function = lower.function(&key, |module| build(module, mode, seed, period, &image));
     let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(Signal::place).collect();
     let captures = mode.filters().then_some(spread);
-    let mut sums = b.call(&function, (places, captures));
-    match mode {
-        Mode::Quad => {
-            // Slopes, but no bends.
-            sums.splice(4..4, [b.float(0.0); 6]);
-        }
-        Mode::Ensemble => {
-            sums.drain(1..4);
-        }
-        _ => {}
-    }
-    at(lower, position, &sums)
+    let [xx, _, _, yy, _, zz] = *spread.covariance;
+    let widest = xx.max(yy).max(zz);
+    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0]).lt(1.0));
+    let sums = b.call(&function, (places, parameters, ensemble, captures));
+    let (fields, rest) = sums.split_at(sums.len().min(4 * image.channels()));
+    let mut signals: Vec<Signal<'b>> = (fields.chunks(4))
+        .map(|field| {
+            let mut parts = field.to_vec();
+            match mode {
+                // Slopes, but no bends.
+                Mode::Quad => parts.extend([b.float(0.0); 6]),
+                Mode::Ensemble => parts.truncate(1),
+                _ => {}
+            }
+            parts.push(b.float(0.0));
+            at(lower, position, &parts)
+        })
+        .collect();
+    attach(lower, &image, &mut signals, rest);
+    signals
 }
 
 /// The seed of a layer.
@@ -57,14 +72,18 @@ fn layer_seed<'b>(layer: Int<'b>, seed: Uint<'b>, period: i32) -> Uint<'b> {
 }
 
 passed! {
-    /// What all layers have in common: where their window starts, the place, the number at the centre,
-    /// the Gaussian along z, and what x and y have by it and given it.
+    /// What all layers have in common: where their window starts, and the place.
     struct Layers {
         start: Float,
         x: Float,
         y: Float,
         z: Float,
-        centre: Float,
+    }
+}
+
+passed! {
+    /// Which cells these are, the Gaussian along z, and what x and y have by it and given it.
+    struct LayersCells {
         cell_x: Int,
         cell_y: Int,
         cell_z: Int,
@@ -81,32 +100,48 @@ passed! {
     }
 }
 
-passed! {
-    /// Sums over the layers: of the weight, of d, of d², and of the slopes of d.
-    struct LayerSums {
-        weight: Float,
-        first: Float,
-        second: Float,
-        slope_x: Float,
-        slope_y: Float,
-        slope_z: Float,
+/// Sums over the layers: as over rows, and of the slope along z.
+#[derive(Clone, Debug)]
+struct LayerSums<'b> {
+    rows: Sums<'b>,
+    slope_z: Vec<Float<'b>>,
+}
+
+impl<'b> Scalars<'b> for LayerSums<'b> {
+    fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
+        self.rows.each(visit);
+        self.slope_z.each(visit);
+    }
+
+    fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
+        Self {
+            rows: self.rows.replaced(next),
+            slope_z: self.slope_z.replaced(next),
+        }
     }
 }
 
 /// One layer of cells, the body of a fold.
-fn layer(module: &mut Module, period: i32) -> FunctionRef {
-    let row = row(module, period);
+fn layer(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
+    let row = row(module, period, image);
     let b = &Builder::new("cell_layer", "One layer of cells.");
     let index = b.uint_param("index");
-    let sums = LayerSums::declare(b);
+    let count = image.channels();
+    let sums = LayerSums {
+        rows: Sums::declare(b, count),
+        slope_z: channels(b, "slope_z", count),
+    };
     let layers = Layers::declare(b);
+    let centre = channels(b, "centre", count);
+    let of_layers = LayersCells::declare(b);
+    let parameters = image.declare(b);
     let place = layers.start + index.to_float();
-    let slice = Slice::of(place - layers.z, [layers.sd_z, layers.inverse_sd_z]);
+    let slice = Slice::of(place - layers.z, [of_layers.sd_z, of_layers.inverse_sd_z]);
 
     // x and y given the layer.
-    let shear = Vec2([layers.shear_x, layers.shear_y]);
+    let shear = Vec2([of_layers.shear_x, of_layers.shear_y]);
     let mean = Vec2([layers.x, layers.y]) + shear * slice.moved;
-    let own = Sym2([layers.s_xx, layers.s_xy, layers.s_yy]);
+    let own = Sym2([of_layers.s_xx, of_layers.s_xy, of_layers.s_yy]);
     let swept = shear * slice.within;
     let covariance = own
         + Sym2([
@@ -117,42 +152,55 @@ fn layer(module: &mut Module, period: i32) -> FunctionRef {
     // det (Σ + w ββᵀ) = det Σ + w βᵀ adj(Σ) β, here of the first Σ.
     let adjugate = Sym2([own[2], -own[1], own[0]]);
     let more = swept.dot(adjugate.times(shear)).max(0.0);
-    let determinant = layers.determinant + more;
+    let determinant = of_layers.determinant + more;
 
     let cells = Cells {
-        centre: layers.centre,
-        origin: [layers.cell_x, layers.cell_y],
-        seed: layer_seed(layers.cell_z + place.to_int(), layers.seed, period),
-        fade: layers.fade,
+        centre,
+        origin: [of_layers.cell_x, of_layers.cell_y],
+        seed: layer_seed(of_layers.cell_z + place.to_int(), of_layers.seed, period),
+        fade: of_layers.fade,
+        parameters,
     };
     let plane = Plane::of(&row, *mean, (covariance, determinant), &cells);
-    let shifted = shear.dot(plane.slopes);
-    let slope_z = slice.slope(layers.inverse_sd_z, plane.first, shifted);
-    LayerSums {
-        weight: sums.weight + slice.weight,
-        first: sums.first + slice.weight * plane.first,
-        second: sums.second + slice.weight * plane.second,
-        slope_x: sums.slope_x + slice.weight * plane.slopes[0],
-        slope_y: sums.slope_y + slice.weight * plane.slopes[1],
-        slope_z: sums.slope_z + slope_z,
-    }
-    .results(b);
+    let weight = slice.weight;
+    let along = |axis: usize| -> Vec<Float<'_>> {
+        plane.slopes.iter().map(|slopes| slopes[axis]).collect()
+    };
+    let slope_z = (sums.slope_z.iter().zip(&plane.first).zip(&plane.slopes)).map(
+        |((&sum, &first), &slopes)| {
+            let shifted = shear.dot(slopes);
+            sum + slice.slope(of_layers.inverse_sd_z, first, shifted)
+        },
+    );
+    let slope_z: Vec<Float<'_>> = slope_z.collect();
+    let rows = Sums {
+        weight: sums.rows.weight + weight,
+        first: weighted(sums.rows.first, weight, &plane.first),
+        second: weighted(sums.rows.second, weight, &plane.second),
+        slope_x: weighted(sums.rows.slope_x, weight, &along(0)),
+        slope_y: weighted(sums.rows.slope_y, weight, &along(1)),
+    };
+    rows.results(b);
+    b.results(named(&[("slope_z", count)]), slope_z);
     b.finish(module)
 }
 
-fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef {
-    let layer = mode.filters().then(|| layer(module, period));
+fn build(module: &mut Module, mode: Mode, seed: i32, period: i32, image: &Image) -> FunctionRef {
+    let layer = mode.filters().then(|| layer(module, period, image));
     let b = &Builder::new("cells_in_space", "Filtered random cells in space.");
     let (origin, [x, y, z]) = declared::<3>(b);
+    let parameters = image.declare(b);
     let [cell_x, cell_y, cell_z] = origin;
     let seed = lattice_seed(b, seed, 0x510e_527f);
     let [column, row, own] =
         [(cell_x, x), (cell_y, y), (cell_z, z)].map(|(cell, at)| cell + at.floor().to_int());
     let centre = number([column, row], layer_seed(own, seed, period), period);
+    let centre = image.of(centre, &parameters);
     let Some(layer) = layer else {
-        b.result("mean", centre);
+        b.results(named(&[("mean", centre.len())]), centre);
         return b.finish(module);
     };
+    let ensemble = declared_ensemble(b, image);
     let spread = Spread::declare(b);
     let [xx, xy, xz, yy, yz, zz] = *spread.covariance;
     let [minor_xx, minor_xy, _, minor_yy, _, minor_zz] = *spread.adjugate;
@@ -170,13 +218,9 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef
     let [s_xx, s_xy, s_yy, determinant] =
         minors.map(|(minor, own)| (minor + own * NARROWEST) * precision);
     let fade = fading(xx.max(yy).max(raised).sqrt());
-    let [start, count] = window(z, sd_z);
-    let layers = Layers {
-        start,
-        x,
-        y,
-        z,
-        centre,
+    let [start, layers_in_window] = window(z, sd_z);
+    let layers = Layers { start, x, y, z };
+    let of_layers = LayersCells {
         cell_x,
         cell_y,
         cell_z,
@@ -191,10 +235,21 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef
         s_yy,
         determinant,
     };
-    let sums = b.fold(&layer, counted(count, fade), LayerSums::zero(b), layers);
-    let scale = 1.0 / sums.weight.max(1e-6);
-    let slopes = [sums.slope_x, sums.slope_y, sums.slope_z].map(|sum| sum * scale);
-    let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(|row| dot(row, slopes));
+    let zero = b.float(0.0);
+    let before = LayerSums {
+        rows: Sums::zero(b, image.channels()),
+        slope_z: vec![zero; image.channels()],
+    };
+    let captures = (layers, &centre, of_layers, &parameters);
+    let sums = b.fold(&layer, counted(layers_in_window, fade), before, captures);
+    let LayerSums { rows, slope_z } = sums;
+    let scale = 1.0 / rows.weight.max(1e-6);
+    let slopes: Vec<[Float<'_>; 3]> = (rows.slope_x.iter().zip(&rows.slope_y).zip(&slope_z))
+        .map(|((&x, &y), &z)| [x, y, z].map(|sum| sum * scale))
+        .collect();
+    let through: Vec<[Float<'_>; 3]> = (slopes.iter())
+        .map(|&slopes| [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(|row| dot(row, slopes)))
+        .collect();
 
     // The two axes of a footprint on a surface.
     let major = spread.size().square();
@@ -202,13 +257,13 @@ fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef
     let [along, across] = [major, minor].map(coincidence);
     let filtered = Filtered {
         centre,
-        first: sums.first * scale,
-        second: sums.second * scale,
-        slopes: &slopes,
-        linear: dot(slopes, rows),
+        first: rows.first.iter().map(|&sum| sum * scale).collect(),
+        second: rows.second.iter().map(|&sum| sum * scale).collect(),
+        linear: (pairs(slopes.len()).map(|(i, k)| dot(slopes[i], through[k]))).collect(),
+        slopes: slopes.iter().map(|slopes| slopes.to_vec()).collect(),
         fade,
         same: along * across,
     };
-    filtered.results(b, mode);
+    filtered.results(b, mode, ensemble.as_ref());
     b.finish(module)
 }

@@ -58,6 +58,16 @@ const DISTANCES: [[[f32; 2]; 5]; 3] = [
 ];
 
 impl Worley {
+    /// The least and the largest value.
+    pub(super) fn range(self) -> [f32; 2] {
+        match (self.solid, self.output) {
+            (true, Output::Difference) => [-1.0, 1.0],
+            (true, _) => [0.0, 1.0],
+            // No point of the window is farther than its corner.
+            (false, _) => [0.0, 3.6],
+        }
+    }
+
     /// Mean and variance over the plane.
     pub(crate) fn moments(self) -> [f32; 2] {
         if self.solid {

@@ -28,42 +28,73 @@ pub(super) struct Nearest<'b> {
     /// Their numbers.
     value: Option<Float<'b>>,
     other: Option<Float<'b>>,
+    /// Where they are.
+    at: Option<Vec2<'b>>,
+    other_at: Option<Vec2<'b>>,
+}
+
+/// What of them is kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept {
+    /// The second as well.
+    pub(super) second: bool,
+    pub(super) numbers: bool,
+    pub(super) places: bool,
+}
+
+impl Kept {
+    /// What the value of a noise needs.
+    pub(super) fn of(worley: Worley) -> Self {
+        Self {
+            second: worley.output != Output::First,
+            numbers: worley.solid,
+            places: false,
+        }
+    }
 }
 
 impl<'b> Scalars<'b> for Nearest<'b> {
     fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
         (self.first, self.second, self.value, self.other).each(visit);
+        [self.at, self.other_at]
+            .map(|at| at.map(|at| at.0))
+            .each(visit);
     }
 
     fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
         let (first, second, value, other) =
             (self.first, self.second, self.value, self.other).replaced(next);
+        let places = [self.at, self.other_at].map(|at| at.map(|at| at.0));
+        let [at, other_at] = places.replaced(next).map(|at| at.map(Vec2));
         Self {
             first,
             second,
             value,
             other,
+            at,
+            other_at,
         }
     }
 }
 
 impl<'b> Nearest<'b> {
     /// Before any point.
-    pub(super) fn none(b: &'b Builder, worley: Worley) -> Self {
+    pub(super) fn none(b: &'b Builder, kept: Kept) -> Self {
         let (far, zero) = (b.float(FAR), b.float(0.0));
-        let two = worley.output != Output::First;
         Self {
             first: far,
-            second: two.then_some(far),
-            value: worley.solid.then_some(zero),
-            other: (worley.solid && two).then_some(zero),
+            second: kept.second.then_some(far),
+            value: kept.numbers.then_some(zero),
+            other: (kept.numbers && kept.second).then_some(zero),
+            at: kept.places.then_some(Vec2::splat(zero)),
+            other_at: (kept.places && kept.second).then_some(Vec2::splat(zero)),
         }
     }
 
     /// The parameters of so many places.
-    fn declare(b: &'b Builder, worley: Worley, count: usize) -> Vec<Self> {
+    fn declare(b: &'b Builder, kept: Kept, count: usize) -> Vec<Self> {
         let named = |tap: usize| {
-            let none = Self::none(b, worley);
+            let none = Self::none(b, kept);
             let mut names = none.names().into_iter();
             none.replaced(&mut || {
                 let name = names.next().expect("a name for each part");
@@ -79,6 +110,10 @@ impl<'b> Nearest<'b> {
             ("second", self.second),
             ("value", self.value),
             ("other", self.other),
+            ("at_x", self.at.map(|at| at[0])),
+            ("at_y", self.at.map(|at| at[1])),
+            ("other_x", self.other_at.map(|at| at[0])),
+            ("other_y", self.other_at.map(|at| at[1])),
         ];
         let known = parts.into_iter().filter(|(_, part)| part.is_some());
         known.map(|(name, _)| name).collect()
@@ -106,19 +141,42 @@ impl<'b> Nearest<'b> {
         }
     }
 
-    /// One more point: its squared distance and its number.
-    fn nearer(self, q: Float<'b>, number: Float<'b>) -> Self {
+    /// The number of the nearest.
+    pub(super) fn number(&self) -> Float<'b> {
+        self.value.expect("numbers that are read are kept")
+    }
+
+    /// Where the nearest is.
+    pub(super) fn at(&self) -> Vec2<'b> {
+        self.at.expect("places that are read are kept")
+    }
+
+    /// From the nearest to the second.
+    pub(super) fn apart(&self) -> Vec2<'b> {
+        self.other_at.expect("places that are read are kept") - self.at()
+    }
+
+    /// One more point: its squared distance, its number and where it is.
+    fn nearer(self, q: Float<'b>, number: Float<'b>, place: Vec2<'b>) -> Self {
         let won = q.lt(self.first);
         let second = |second: Float<'b>| second.min(self.first.max(q));
         let other = || {
             let placed = q.lt(self.second?).select(number, self.other?);
             Some(won.select(self.value?, placed))
         };
+        let other_at = || {
+            let before = self.second?;
+            let [at, other] = [self.at?, self.other_at?];
+            let placed = place.zip(other, |new, old| q.lt(before).select(new, old));
+            Some(at.zip(placed, |moved, placed| won.select(moved, placed)))
+        };
         Self {
             first: self.first.min(q),
             second: self.second.map(second),
             value: self.value.map(|value| won.select(number, value)),
             other: other(),
+            at: (self.at).map(|at| place.zip(at, |new, old| won.select(new, old))),
+            other_at: other_at(),
         }
     }
 }
@@ -143,10 +201,10 @@ passed! {
 }
 
 /// The point of one cell, the body of a fold over columns.
-fn column(module: &mut Module, worley: Worley, count: usize) -> FunctionRef {
+fn column(module: &mut Module, worley: Worley, kept: Kept, count: usize) -> FunctionRef {
     let b = &Builder::new("worley_column", "The point of one cell.");
     let index = b.uint_param("index");
-    let nearest = Nearest::declare(b, worley, count);
+    let nearest = Nearest::declare(b, kept, count);
     let row = Row::declare(b);
     let places = declared_places(b, count);
     let place_x = row.start_x + index.to_float();
@@ -156,14 +214,14 @@ fn column(module: &mut Module, worley: Worley, count: usize) -> FunctionRef {
         let share = bits.to_float() * (1.0 / 65536.0);
         place + ((share + -0.5) * worley.jitter + 0.5)
     });
-    let number = if worley.solid {
+    let number = if kept.numbers {
         uniform((hash ^ 0x9e37_79b9).scramble())
     } else {
         b.float(0.0)
     };
     for (tap, (nearest, place)) in nearest.into_iter().zip(places).enumerate() {
         let square = (place - Vec2(point)).norm2();
-        nearest.nearer(square, number).results(b, tap);
+        nearest.nearer(square, number, Vec2(point)).results(b, tap);
     }
     b.finish(module)
 }
@@ -181,11 +239,11 @@ passed! {
 }
 
 /// The points of one row of cells, the body of a fold.
-pub(super) fn row(module: &mut Module, worley: Worley, count: usize) -> FunctionRef {
-    let column = column(module, worley, count);
+pub(super) fn row(module: &mut Module, worley: Worley, kept: Kept, count: usize) -> FunctionRef {
+    let column = column(module, worley, kept, count);
     let b = &Builder::new("worley_row", "The points of one row of cells.");
     let index = b.uint_param("index");
-    let nearest = Nearest::declare(b, worley, count);
+    let nearest = Nearest::declare(b, kept, count);
     let rows = Rows::declare(b);
     let places = declared_places(b, count);
     let place_y = rows.start_y + index.to_float();

@@ -7,9 +7,10 @@
 use super::super::bond::Bond;
 use super::super::taps::Taps;
 use super::{
-    ALONE, BRICK, SUMS, declared_cells, faded, offset_parameter, random, row_hash, within,
+    ALONE, BRICK, Summed, declared, declared_cells, faded, offset_parameter, row_hash, sums, within,
 };
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Sym2};
+use mipless_codegen::{Image, pairs};
 
 /// Along each coordinate, given the other one, half of a part is at most one over this many standard
 /// deviations.
@@ -61,8 +62,13 @@ pub(super) fn parts<'b>(
 
 /// A function of x, y, Σ, the parts, the cells, the seed, how much is kept, and the offset where that is
 /// not fixed: the sums, of weights that sum to what is kept.
-pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
-    let tile = tile(module, bond, fixed);
+pub(super) fn function(
+    module: &mut Module,
+    bond: Bond,
+    fixed: Option<f32>,
+    image: &Image,
+) -> FunctionRef {
+    let tile = tile(module, bond, fixed, image);
     let count = tiles(bond).len() as u32;
     let b = &Builder::new("brick_tiles", "Random bricks under a long footprint.");
     let place = b.float_params(["x", "y"]);
@@ -72,6 +78,7 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
     let seed = b.uint_param("seed");
     let kept = b.float_param("kept");
     let offset = offset_parameter(b, fixed);
+    let summed = Summed::declare(b, image);
     let half = half(bond);
     let halves = [0, 1].map(|k| half[k] / parts[k]);
     // Of a part, ⅓ of the square of half its size.
@@ -86,10 +93,11 @@ pub(super) fn function(module: &mut Module, bond: Bond, fixed: Option<f32>) -> F
     let shape = (place, parts, halves, sds, slope, [inverse_x, inverse_y]);
     let live = fixed.is_none().then_some(offset);
     let count = kept.gt(0.0).select(count, 0u32);
-    let none = [b.float(0.0); SUMS.len()];
-    let sums = b.fold(&tile, count, none, (shape, cells, seed, live));
-    let share = kept / sums[7].max(1e-20);
-    b.results(SUMS, sums.map(|sum| sum * share));
+    let names = sums(image);
+    let none = vec![b.float(0.0); names.len()];
+    let sums = b.fold(&tile, count, none, (shape, cells, seed, live, &summed));
+    let share = kept / sums[sums.len() - 1].max(1e-20);
+    b.results(names, sums.into_iter().map(|sum| sum * share));
     b.finish(module)
 }
 
@@ -114,14 +122,15 @@ fn tiles(bond: Bond) -> Vec<[f32; 4]> {
 }
 
 /// The parts of one more tile, the body of a fold.
-fn tile(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
-    let part = part(module);
+fn tile(module: &mut Module, bond: Bond, fixed: Option<f32>, image: &Image) -> FunctionRef {
+    let part = part(module, image);
     let tiles = tiles(bond);
     let has_shift = tiles.iter().any(|tile| tile[3] != 0.0);
     let table = module.table("tiles", tiles.concat());
     let b = &Builder::new("tile_parts", "The parts of one more tile.");
     let index = b.uint_param("index");
-    let state = b.float_params(SUMS);
+    let names = sums(image);
+    let state = declared(b, &names);
     let place = b.float_params(["x", "y"]);
     let parts = b.float_params(["parts_x", "parts_y"]);
     let halves = b.float_params(["half_x", "half_y"]);
@@ -130,6 +139,7 @@ fn tile(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let cells = declared_cells(b);
     let seed = b.uint_param("seed");
     let offset = offset_parameter(b, fixed);
+    let summed = Summed::declare(b, image);
     let entry = |i: u32| b.load(table, index * 4 + i);
     let mut centre = [entry(0), entry(1)];
     if has_shift {
@@ -141,18 +151,27 @@ fn tile(module: &mut Module, bond: Bond, fixed: Option<f32>) -> FunctionRef {
     let from = [0, 1].map(|k| place[k] - centre[k] + half[k] - halves[k]);
     let count = (parts[0] * parts[1]).to_int().to_uint();
     let grid = (from, parts[0], 1.0 / parts[0], halves);
-    let captures = (grid, [sd_x, sd_y, slope], inverse, cells, which, seed);
+    let captures = (
+        grid,
+        [sd_x, sd_y, slope],
+        inverse,
+        cells,
+        which,
+        seed,
+        &summed,
+    );
     let sums = b.fold(&part, count, state, captures);
-    b.results(SUMS, sums);
+    b.results(names, sums);
     b.finish(module)
 }
 
 /// The copies of one more part of a tile, the body of a fold.
-fn part(module: &mut Module) -> FunctionRef {
-    let row = row(module);
+fn part(module: &mut Module, image: &Image) -> FunctionRef {
+    let row = row(module, image);
     let b = &Builder::new("part_copies", "The copies of one more part of a tile.");
     let index = b.uint_param("index");
-    let state = b.float_params(SUMS);
+    let names = sums(image);
+    let state = declared(b, &names);
     let corner = b.float_params(["corner_x", "corner_y"]);
     let [parts, inverse_parts] = b.float_params(["parts_x", "inverse_parts"]);
     let halves = b.float_params(["half_x", "half_y"]);
@@ -160,29 +179,40 @@ fn part(module: &mut Module) -> FunctionRef {
     let inverse = b.float_params(["inverse_x", "inverse_y"]);
     let cells = declared_cells(b);
     let [which, seed] = ["which", "seed"].map(|name| b.uint_param(name));
+    let summed = Summed::declare(b, image);
     // Half a part added before the division keeps whole quotients whole.
     let number = index.to_float();
     let up = ((number + 0.5) * inverse_parts).floor();
     let along = number - up * parts;
     let from = [(0, along), (1, up)].map(|(k, at)| corner[k] - (at + at) * halves[k]);
     let [start, rows] = within(from[1], sd_y * REACH);
-    let captures = (from, [start, sd_x, slope], inverse, cells, which, seed);
+    let captures = (
+        from,
+        [start, sd_x, slope],
+        inverse,
+        cells,
+        which,
+        seed,
+        &summed,
+    );
     let sums = b.fold(&row, rows.to_int().to_uint(), state, captures);
-    b.results(SUMS, sums);
+    b.results(names, sums);
     b.finish(module)
 }
 
 /// One more row of copies, the body of a fold.
-fn row(module: &mut Module) -> FunctionRef {
-    let copy = copy(module);
+fn row(module: &mut Module, image: &Image) -> FunctionRef {
+    let copy = copy(module, image);
     let b = &Builder::new("tile_row", "One more row of copies.");
     let index = b.uint_param("index");
-    let state = b.float_params(SUMS);
+    let names = sums(image);
+    let state = declared(b, &names);
     let from = b.float_params(["from_x", "from_y"]);
     let [start, sd_x, slope] = b.float_params(["start", "sd_x", "slope"]);
     let inverse = b.float_params(["inverse_x", "inverse_y"]);
     let cells = declared_cells(b);
     let [which, seed] = ["which", "seed"].map(|name| b.uint_param(name));
+    let summed = Summed::declare(b, image);
     let at = start + index.to_float();
     let hash = row_hash(cells[1] + at.to_int(), which, seed);
     let up = from[1] - at;
@@ -193,24 +223,26 @@ fn row(module: &mut Module) -> FunctionRef {
     let middle = from[0] - slope * up;
     let [first, count] = within(middle, reach);
     let line = [middle, first, used, scaled, slope];
-    let captures = (line, inverse, cells[0], hash);
+    let captures = (line, inverse, cells[0], hash, &summed);
     let sums = b.fold(&copy, count.to_int().to_uint(), state, captures);
-    b.results(SUMS, sums);
+    b.results(names, sums);
     b.finish(module)
 }
 
 /// One more copy, the body of a fold.
-fn copy(module: &mut Module) -> FunctionRef {
+fn copy(module: &mut Module, image: &Image) -> FunctionRef {
     let b = &Builder::new("tile_copy", "One more copy of a tile.");
     let index = b.uint_param("index");
-    let state = b.float_params(SUMS);
+    let names = sums(image);
+    let state = declared(b, &names);
     let [middle, first, used] = b.float_params(["middle", "first", "used"]);
     let [scaled, slope] = b.float_params(["scaled", "slope"]);
     let inverse = b.float_params(["inverse_x", "inverse_y"]);
     let cell = b.int_param("cell_x");
     let hash = b.uint_param("row");
+    let summed = Summed::declare(b, image);
     let at = first + index.to_float();
-    let number = random(cell + at.to_int(), hash);
+    let numbers = summed.of(cell + at.to_int(), hash);
     let beside = middle - at;
     let across = beside * inverse[0];
     // Copies come and go where they have no weight.
@@ -218,21 +250,25 @@ fn copy(module: &mut Module) -> FunctionRef {
     let weight = (density - (-0.5 * REACH * REACH).exp()).max(0.0);
     // Λ times the distance: (a, s − slope · a) with a = beside/left and s = up/Σ₂₂.
     let rise = scaled - slope * across;
-    let value = weight * number;
-    let steep = density * number;
+    let both: Vec<[Float<'_>; 2]> = (numbers.iter())
+        .map(|&number| [weight * number, density * number])
+        .collect();
     // Λ₁₁ = 1/left, Λ₁₂ = −slope/left, Λ₂₂ = 1/Σ₂₂ + slope²/left.
     let side = slope * inverse[0];
     let last = inverse[1] + slope * side;
-    let parts = [
-        value,
-        -(steep * across),
-        -(steep * rise),
-        steep * (across * across - inverse[0]),
-        steep * (across * rise + side),
-        steep * (rise.square() - last),
-        value * number,
-        weight,
-    ];
-    b.sums(SUMS, state, parts);
+    let mut parts = Vec::new();
+    for &[value, steep] in &both {
+        parts.extend([
+            value,
+            -(steep * across),
+            -(steep * rise),
+            steep * (across * across - inverse[0]),
+            steep * (across * rise + side),
+            steep * (rise.square() - last),
+        ]);
+    }
+    parts.extend(pairs(numbers.len()).map(|(i, k)| both[i][0] * numbers[k]));
+    parts.push(weight);
+    b.sums(names, state, parts);
     b.finish(module)
 }
