@@ -247,7 +247,7 @@ impl<F: Float> Evaluator<F> {
             if is_uniform != uniform {
                 continue;
             }
-            let register = usize::from(register);
+            let register = register as usize;
             let word = |x: i32| {
                 if ty == Type::Bool {
                     u32::from(x != 0)
@@ -283,7 +283,7 @@ impl<F: Float> Evaluator<F> {
 
     fn store(&self, registers: &Registers<F>, count: usize, outputs: &mut [Vec<F>]) {
         for (output, &(ty, register)) in outputs.iter_mut().zip(&self.code.results) {
-            let register = usize::from(register);
+            let register = register as usize;
             match ty {
                 Type::F32 => output.extend_from_slice(&registers.floats[register].0[..count]),
                 Type::I32 => {

@@ -64,7 +64,9 @@ const BROKEN: [(Law, usize); 5] = [
     (Law::Far, 14),
     // Edges, too.
     (Law::Rounding, 19),
-    (Law::Worse, 99),
+    // Five are off by .0001 at most where a point is exact (1, 13, 43, 45, 236), two by less than a
+    // step of eight bits (67, 80). Not explained: .036 where a point is exact (165), .067 for .035 (203).
+    (Law::Worse, 9),
 ];
 
 /// Random graphs in every run. Of which a number is set by `MIPLESS_GRAPHS`, for runs of hours, every

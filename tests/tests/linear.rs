@@ -109,6 +109,27 @@ fn ten_thousand_nodes_have_a_value() {
     }
 }
 
+/// More constants than sixteen bits count, each of which has a register.
+#[test]
+fn seventy_thousand_constants_are_seventy_thousand_numbers() {
+    let sum = chain(70_000, |i, before| {
+        let number = if i % 2 == 0 { -(i as f32) } else { i as f32 };
+        json!({ "type": "add", "inputs": { "in1": before, "in2": number } })
+    });
+    let texture = Texture::from_json(&sum.to_string()).expect("no mistakes");
+    let at = Footprint {
+        uv: [0.3, 0.7],
+        ..Footprint::default()
+    };
+    let options = Options {
+        method: Method::Point,
+        ..Options::default()
+    };
+    let value = texture.evaluator(&options).evaluate(&[at])[0][0];
+    // Each two of them add one to a noise, in numbers of six digits.
+    assert!((value - 35_000.0).abs() < 2.0, "{value}");
+}
+
 /// Sub-graphs in sub-graphs, each of which holds the one below it twice: a chain of 2ⁿ nodes.
 fn nested(levels: usize) -> Value {
     let mut graphs = Map::new();

@@ -1,6 +1,6 @@
 //! Straight code over registers of lanes: the loops that the compiler vectorises.
 
-use super::code::{Code, Step};
+use super::code::{Code, Register, Step};
 use crate::float::Float;
 use crate::ir::for_each_op;
 use std::any::Any;
@@ -96,10 +96,10 @@ macro_rules! write {
 /// The register of a row's type.
 macro_rules! register {
     (F, $registers:ident, $index:expr) => {
-        &$registers.floats[usize::from($index)].0
+        &$registers.floats[$index as usize].0
     };
     ($t:tt, $registers:ident, $index:expr) => {
-        &$registers.words[usize::from($index)].0
+        &$registers.words[$index as usize].0
     };
 }
 
@@ -110,7 +110,7 @@ macro_rules! into_destination {
         $run;
         swap(
             &mut $registers.spare_float,
-            &mut $registers.floats[usize::from($step.destination)],
+            &mut $registers.floats[$step.destination as usize],
         );
     }};
     ($t:tt, $registers:ident, $step:ident, |$out:ident| $run:expr) => {{
@@ -118,7 +118,7 @@ macro_rules! into_destination {
         $run;
         swap(
             &mut $registers.spare_word,
-            &mut $registers.words[usize::from($step.destination)],
+            &mut $registers.words[$step.destination as usize],
         );
     }};
 }
@@ -150,7 +150,7 @@ macro_rules! define_run {
         /// Runs the steps in order. Every loop is inlined, so that it is compiled once for each
         /// instruction set.
         #[inline(always)]
-        fn run<F: Float>(steps: &[Step<u16>], registers: &mut Registers<F>, tables: &[Box<[F]>]) {
+        fn run<F: Float>(steps: &[Step<Register>], registers: &mut Registers<F>, tables: &[Box<[F]>]) {
             for step in steps {
                 match step.code {
                     $(Code::$variant => run_row!(registers, step, ($($p: $pt),*) -> $rt { $cpu }),)*
@@ -158,7 +158,7 @@ macro_rules! define_run {
                     Code::MulSub => run_row!(registers, step, (a: F, b: F, c: F) -> F { a * b - c }),
                     Code::SubMul => run_row!(registers, step, (a: F, b: F, c: F) -> F { c - a * b }),
                     Code::Load => {
-                        let table = &*tables[usize::from(step.operands[1])];
+                        let table = &*tables[step.operands[1] as usize];
                         let last = table.len() - 1;
                         let index = register!(u32, registers, step.operands[0]);
                         into_destination!(F, registers, step, |out| {
@@ -170,10 +170,10 @@ macro_rules! define_run {
                     Code::Copy => run_row!(registers, step, (a: F) -> F { a }),
                     Code::CopyWord => run_row!(registers, step, (a: u32) -> u32 { a }),
                     Code::Exchange => {
-                        registers.floats.swap(step.destination.into(), step.operands[0].into());
+                        registers.floats.swap(step.destination as usize, step.operands[0] as usize);
                     }
                     Code::ExchangeWord => {
-                        registers.words.swap(step.destination.into(), step.operands[0].into());
+                        registers.words.swap(step.destination as usize, step.operands[0] as usize);
                     }
                 }
             }
@@ -227,7 +227,7 @@ impl Level {
 }
 
 /// A function that runs steps.
-pub(super) type Runner<F> = fn(&[Step<u16>], &mut Registers<F>, &[Box<[F]>]);
+pub(super) type Runner<F> = fn(&[Step<Register>], &mut Registers<F>, &[Box<[F]>]);
 
 /// The function that runs steps at `level`. The banks' are made here by functions that are not
 /// generic, so that they are compiled and optimised with this crate, and not with each that evaluates.
@@ -267,12 +267,16 @@ fn of_bank<F: Float>(level: Level) -> Runner<F> {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn run_avx2<F: Float>(steps: &[Step<u16>], registers: &mut Registers<F>, tables: &[Box<[F]>]) {
+fn run_avx2<F: Float>(steps: &[Step<Register>], registers: &mut Registers<F>, tables: &[Box<[F]>]) {
     run(steps, registers, tables);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn run_avx512<F: Float>(steps: &[Step<u16>], registers: &mut Registers<F>, tables: &[Box<[F]>]) {
+fn run_avx512<F: Float>(
+    steps: &[Step<Register>],
+    registers: &mut Registers<F>,
+    tables: &[Box<[F]>],
+) {
     run(steps, registers, tables);
 }

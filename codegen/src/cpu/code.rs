@@ -37,6 +37,9 @@ macro_rules! define_code {
 }
 for_each_op!(define_code);
 
+/// The number of a register: graphs may have more constants than sixteen bits count.
+pub(super) type Register = u32;
+
 /// One pass over the lanes: registers of type `R` go in and one comes out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step<R> {

@@ -8,7 +8,7 @@
 
 mod scan;
 
-use super::code::Node;
+use super::code::{Node, Register};
 use crate::float::Float;
 use crate::ir::{Function, FunctionId, Inst, Module, Type};
 use rustc_hash::FxHashMap;
@@ -20,7 +20,7 @@ struct Place {
     /// The bank: 0 for floats, 1 for words.
     bank: usize,
     frame: Frame,
-    index: u16,
+    index: Register,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ fn parameter_places(function: &Function, id: FunctionId) -> Vec<Place> {
 #[derive(Debug, Default)]
 struct Constants {
     bits: [Vec<u32>; 2],
-    known: [FxHashMap<u32, u16>; 2],
+    known: [FxHashMap<u32, Register>; 2],
 }
 
 impl Constants {
@@ -63,7 +63,7 @@ impl Constants {
         let all = &mut self.bits[bank];
         let index = *self.known[bank].entry(bits).or_insert_with(|| {
             all.push(bits);
-            all.len() as u16 - 1
+            Register::try_from(all.len() - 1).expect("fewer than 2³² constants")
         });
         Place {
             bank,
@@ -81,20 +81,20 @@ struct Compiled {
     nodes: Vec<Node<Place>>,
     results: Vec<Place>,
     /// The number of registers of each bank.
-    size: [u16; 2],
+    size: [Register; 2],
 }
 
 /// The code of a module.
 #[derive(Debug)]
 pub(super) struct Code<F> {
     /// The code of each function for a batch; the last is the entry's.
-    pub(super) functions: Vec<Vec<Node<u16>>>,
+    pub(super) functions: Vec<Vec<Node<Register>>>,
     /// What the entry needs once for all batches.
-    pub(super) prologue: Vec<Node<u16>>,
+    pub(super) prologue: Vec<Node<Register>>,
     /// The entry's parameters, with their types and registers.
-    pub(super) parameters: Vec<(Type, u16)>,
+    pub(super) parameters: Vec<(Type, Register)>,
     /// The entry's results, with their types and registers.
-    pub(super) results: Vec<(Type, u16)>,
+    pub(super) results: Vec<(Type, Register)>,
     /// What the first float registers hold.
     pub(super) floats: Vec<F>,
     /// What the first word registers hold.
@@ -118,15 +118,15 @@ impl<F: Float> Code<F> {
             let is_entry = index + 1 == module.functions.len();
             compiled.push(scan.run(&|parameter| is_entry && uniform(parameter)));
         }
-        let sizes: Vec<[u16; 2]> = compiled.iter().map(|f| f.size).collect();
+        let sizes: Vec<[Register; 2]> = compiled.iter().map(|f| f.size).collect();
         let first = [0, 1].map(|bank| constants.bits[bank].len());
         let (starts, size) = frame_starts(module, &sizes, first);
-        let register = |place: Place| -> u16 {
+        let register = |place: Place| -> Register {
             let start = match place.frame {
                 Frame::Constants => 0,
                 Frame::Function(id) => starts[id.index()][place.bank],
             };
-            u16::try_from(start + usize::from(place.index)).expect("fewer than 65536 registers")
+            Register::try_from(start + place.index as usize).expect("fewer than 2³² registers")
         };
         let renamed = |nodes: &[Node<Place>]| nodes.iter().map(|n| n.renamed(&register)).collect();
         let id = FunctionId::from_index(module.functions.len() - 1);
@@ -169,14 +169,14 @@ fn fold_bodies(module: &Module) -> Vec<bool> {
 /// Where each frame starts, and where the last one ends.
 fn frame_starts(
     module: &Module,
-    sizes: &[[u16; 2]],
+    sizes: &[[Register; 2]],
     first: [usize; 2],
 ) -> (Vec<[usize; 2]>, [usize; 2]) {
     let mut starts = vec![first; sizes.len()];
     let mut size = first;
     // Callers come after their callees.
     for (index, function) in module.functions.iter().enumerate().rev() {
-        let end = [0, 1].map(|bank| starts[index][bank] + usize::from(sizes[index][bank]));
+        let end = [0, 1].map(|bank| starts[index][bank] + sizes[index][bank] as usize);
         size = [0, 1].map(|bank| size[bank].max(end[bank]));
         for inst in &function.insts {
             if let Inst::Call(callee, _)

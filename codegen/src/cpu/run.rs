@@ -1,7 +1,7 @@
 //! Control flow over batches of lanes.
 
 use super::block::{LANES, Registers, Runner};
-use super::code::{Fold, Node};
+use super::code::{Fold, Node, Register};
 use super::compile::Code;
 use crate::float::Float;
 
@@ -15,7 +15,7 @@ pub(super) struct Run<'a, F> {
 impl<F: Float> Run<'_, F> {
     /// Runs `nodes`; `active` is the word register of the lanes whose results matter, all of them
     /// where there is none.
-    pub(super) fn nodes(&mut self, nodes: &[Node<u16>], active: Option<u16>) {
+    pub(super) fn nodes(&mut self, nodes: &[Node<Register>], active: Option<Register>) {
         let code = self.code;
         for node in nodes {
             match node {
@@ -28,7 +28,7 @@ impl<F: Float> Run<'_, F> {
 
     /// Takes as many turns as the active lane that asks for the most. Turns that every active lane
     /// takes replace the state; later ones select it.
-    fn fold(&mut self, fold: &Fold<u16>, active: Option<u16>) {
+    fn fold(&mut self, fold: &Fold<Register>, active: Option<Register>) {
         let Self { code, runner, .. } = *self;
         let [least, most] = self.limit(fold, active);
         runner(&fold.init, self.registers, &code.tables);
@@ -56,7 +56,7 @@ impl<F: Float> Run<'_, F> {
 
     /// Writes the turns that each lane takes, and returns the least and the most of the active
     /// lanes. What inactive lanes ask for is meaningless, and may be four milliards.
-    fn limit(&mut self, fold: &Fold<u16>, active: Option<u16>) -> [u32; 2] {
+    fn limit(&mut self, fold: &Fold<Register>, active: Option<Register>) -> [u32; 2] {
         let count = *self.words(fold.count);
         let active = active.map_or([1; LANES], |register| *self.words(register));
         let limit = self.words(fold.limit);
@@ -70,7 +70,7 @@ impl<F: Float> Run<'_, F> {
         [least, most]
     }
 
-    fn words(&mut self, register: u16) -> &mut [u32; LANES] {
-        &mut self.registers.words[usize::from(register)].0
+    fn words(&mut self, register: Register) -> &mut [u32; LANES] {
+        &mut self.registers.words[register as usize].0
     }
 }

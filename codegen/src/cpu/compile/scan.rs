@@ -3,8 +3,9 @@
 mod call;
 
 use super::{Compiled, Constants, Frame, Place, bank, parameter_places};
-use crate::cpu::code::{Code, Node, Step};
+use crate::cpu::code::{Code, Node, Register, Step};
 use crate::ir::{Function, FunctionId, Inst, Module, Op, Type, Value};
+use rustc_hash::FxHashMap;
 use std::mem::take;
 
 /// The position of a value's last use that comes after every instruction.
@@ -13,13 +14,13 @@ const END: usize = usize::MAX;
 /// The registers of one bank in a frame.
 #[derive(Debug, Default)]
 struct Pool {
-    free: Vec<u16>,
-    size: u16,
+    free: Vec<Register>,
+    size: Register,
 }
 
 impl Pool {
     /// A free register: the one that was used last, whose lines are in the cache.
-    fn take(&mut self) -> u16 {
+    fn take(&mut self) -> Register {
         self.free.pop().unwrap_or_else(|| {
             self.size += 1;
             self.size - 1
@@ -37,6 +38,8 @@ pub(super) struct Scan<'a> {
     /// Whether a fold applies this function: its parameters then outlive their last use.
     is_body: bool,
     places: Vec<Option<Place>>,
+    /// The results of each call and fold that something takes, with their numbers.
+    results_of: FxHashMap<Value, Vec<(Value, u32)>>,
     /// The position of the last instruction that reads a value, [`END`] for results; nothing where
     /// no code is needed.
     last_use: Vec<Option<usize>>,
@@ -57,6 +60,13 @@ impl<'a> Scan<'a> {
     ) -> Self {
         let function = module.function(id);
         let count = function.insts.len();
+        let mut results_of: FxHashMap<Value, Vec<(Value, u32)>> = FxHashMap::default();
+        for (index, inst) in function.insts.iter().enumerate() {
+            if let Inst::Result(of, i) = inst {
+                let results = results_of.entry(*of).or_default();
+                results.push((Value::from_index(index), *i));
+            }
+        }
         Self {
             module,
             function,
@@ -65,6 +75,7 @@ impl<'a> Scan<'a> {
             constants,
             is_body,
             places: vec![None; count],
+            results_of,
             last_use: vec![None; count],
             merged: vec![false; count],
             pools: Default::default(),
@@ -193,14 +204,13 @@ impl<'a> Scan<'a> {
             Inst::Param(_) | Inst::Result(..) => {}
             Inst::Op(op, operands) => self.define_op(value, *op, *operands, position),
             Inst::Load(table, index) => {
-                let table = u16::try_from(*table).expect("fewer than 65536 tables");
                 let index_place = self.place(*index);
                 self.release(&[*index], position);
                 let destination = self.allocate(value);
                 let table = Place {
                     bank: 0,
                     frame: Frame::Constants,
-                    index: table,
+                    index: *table,
                 };
                 self.step(Code::Load, destination, [index_place, table, index_place]);
             }

@@ -3,7 +3,7 @@
 use super::super::{Frame, Place, parameter_places};
 use super::Scan;
 use crate::cpu::code::{Code, Fold, Node};
-use crate::ir::{FunctionId, Inst, Type, Value};
+use crate::ir::{FunctionId, Type, Value};
 use std::mem::take;
 
 impl Scan<'_> {
@@ -102,15 +102,11 @@ impl Scan<'_> {
 
     /// Gives places to the results of `of`, and moves them there.
     fn receive(&mut self, of: Value, sources: &[Place]) {
-        let mut results = Vec::new();
-        for (index, inst) in self.function.insts.iter().enumerate().skip(of.index()) {
-            if let Inst::Result(from, i) = inst
-                && *from == of
-                && self.last_use[index].is_some()
-            {
-                results.push((Value::from_index(index), sources[*i as usize]));
-            }
-        }
+        let results: Vec<(Value, Place)> = (self.results_of.remove(&of).unwrap_or_default())
+            .into_iter()
+            .filter(|(value, _)| self.last_use[value.index()].is_some())
+            .map(|(value, i)| (value, sources[i as usize]))
+            .collect();
         for (k, &(value, source)) in results.iter().enumerate() {
             let destination = self.allocate(value);
             let again = results[k + 1..].iter().any(|&(_, later)| later == source);
