@@ -8,6 +8,7 @@ mod ahead;
 mod arguments;
 mod audit;
 mod bands;
+mod definition;
 mod drawn;
 mod entry;
 mod facts;
@@ -36,6 +37,7 @@ mod torus;
 mod upstream;
 
 pub use audit::{Audit, AuditedBand, AuditedOutput, Remedy, Replaced};
+pub use definition::NodeDef;
 pub use image::{Ensemble, Image, pairs};
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
@@ -47,7 +49,7 @@ use crate::moments::{Algebra, Map, Mode, Samples, Signal, Symbol, Tabulated};
 use arguments::Arguments;
 use facts::Facts;
 use mipless_graph::{
-    Behaviour, Checked, Graph, InputView, Node, NodeId, NodeSpec, Picture, Reach, Source, Type,
+    Behaviour, Checked, Graph, InputView, Node, NodeId, Picture, Reach, Source, Type,
 };
 use rustc_hash::FxHashMap;
 use std::any::Any;
@@ -56,37 +58,6 @@ use std::sync::Arc;
 
 /// The components of a node's output.
 pub type Bundle<'b> = Vec<Signal<'b>>;
-
-/// A node type: its spec, which holds its statistics rule, and its lowering.
-#[derive(Clone, Copy, Debug)]
-pub struct NodeDef {
-    /// Everything but the lowering.
-    pub spec: &'static NodeSpec,
-    /// Builds the node's output: as many signals as its type has components.
-    pub lower: for<'b> fn(&mut Lower<'_, 'b>, &Node) -> Bundle<'b>,
-    /// Whether a node of the type gives each of many things (cells, regions, bricks) a random number:
-    /// its lowering sums any function of the numbers over them ([`Lower::image`]).
-    pub things: fn(&Node) -> bool,
-}
-
-impl NodeDef {
-    /// A node that knows of no things.
-    pub const fn new(
-        spec: &'static NodeSpec,
-        lower: for<'b> fn(&mut Lower<'_, 'b>, &Node) -> Bundle<'b>,
-    ) -> Self {
-        Self {
-            spec,
-            lower,
-            things: |_| false,
-        }
-    }
-
-    /// One that gives things numbers where this holds.
-    pub const fn of_things(self, things: fn(&Node) -> bool) -> Self {
-        Self { things, ..self }
-    }
-}
 
 /// What to compile for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,16 +15,13 @@ pub(crate) mod space;
 use super::field::Spread;
 use super::period::wrapped;
 use super::things::{
-    Filtered, Sums, attach, channels, declared_ensemble, ensemble, named, weighted,
+    Filtered, Sums, VARIANCE, attach, channels, declared_ensemble, ensemble, named, weighted,
 };
 use line::Sums as LineSums;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Scalar, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Normal, Signal};
 use mipless_codegen::{Image, Lower, pairs};
 use passed::{Passed, passed};
-
-/// The variance of a number of [0, 1).
-pub(crate) const VARIANCE: f32 = 1.0 / 12.0;
 
 /// How far a window reaches, in standard deviations; weights are normalised to their sum.
 const REACH: f32 = 2.8;

@@ -2,9 +2,10 @@
 
 use crate::color::hsv::to_rgb;
 use crate::noise::cell::line::{Line, filtered};
-use crate::noise::cell::{VARIANCE, lattice_seed, number};
+use crate::noise::cell::{lattice_seed, number};
 use crate::noise::randomfloat::{IN, place};
 use crate::noise::source::SEED;
+use crate::noise::things::VARIANCE;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand};
 use mipless_codegen::{Bundle, Ensemble, Lower, pairs};
 use mipless_graph::{

@@ -2,8 +2,9 @@
 
 use crate::componentwise::{exposed, product, sum};
 use crate::noise::cell::line::{Line, filtered};
-use crate::noise::cell::{VARIANCE, lattice_seed, number};
+use crate::noise::cell::{lattice_seed, number};
 use crate::noise::source::SEED;
+use crate::noise::things::VARIANCE;
 use crate::port;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Ensemble, Lower};

@@ -1,9 +1,11 @@
 //! What sums over things have in common: cells, regions and bricks, of whose numbers an image is summed.
 
-use super::cell::VARIANCE;
 use mipless_codegen::ir::{Bool, Builder, Float, Scalar, Scalars};
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_codegen::{Ensemble, Image, Lower, pairs};
+
+/// The variance of a number of [0, 1).
+pub(crate) const VARIANCE: f32 = 1.0 / 12.0;
 
 /// What an image is over all things, as captures of the functions that sum it: of the number itself it
 /// is known there. Where nothing fades, it is not wanted.

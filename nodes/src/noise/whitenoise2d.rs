@@ -1,9 +1,10 @@
 //! `whitenoise2d`: a random number at every point.
 
-use crate::noise::cell::{VARIANCE, deviation, inside, lattice_seed, number};
+use crate::noise::cell::{deviation, inside, lattice_seed, number};
 use crate::noise::cellnoise2d::PERIOD;
 use crate::noise::field::{Field, Spread};
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
+use crate::noise::things::VARIANCE;
 use mipless_codegen::ir::{Sym2, Vec2};
 use mipless_codegen::moments::Normal;
 use mipless_codegen::{Bundle, Lower};

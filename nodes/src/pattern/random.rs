@@ -12,15 +12,12 @@ use super::bond::{Bond, Brick};
 use super::separable::{orders, rest};
 use super::taps::Taps;
 use crate::noise::field::{Field, Spread};
-use crate::noise::things::{attach, channels, ensemble, named};
+use crate::noise::things::{VARIANCE, attach, channels, ensemble, named};
 use mipless_codegen::ir::{
     Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Sym2, Uint, Vec2,
 };
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_codegen::{Image, Lower, pairs};
-
-/// The variance of a uniform number in [0, 1].
-const VARIANCE: f32 = 1.0 / 12.0;
 
 /// Standard deviations along a coordinate, in unit cells, without what the coordinates share: above
 /// the first the sum fades, at the second it has faded.

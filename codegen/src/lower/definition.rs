@@ -1,0 +1,35 @@
+//! What codegen knows of a node type.
+
+use super::{Bundle, Lower};
+use mipless_graph::{Node, NodeSpec};
+
+/// A node type: its spec, which holds its statistics rule, and its lowering.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeDef {
+    /// Everything but the lowering.
+    pub spec: &'static NodeSpec,
+    /// Builds the node's output: as many signals as its type has components.
+    pub lower: for<'b> fn(&mut Lower<'_, 'b>, &Node) -> Bundle<'b>,
+    /// Whether a node of the type gives each of many things (cells, regions, bricks) a random number:
+    /// its lowering sums any function of the numbers over them ([`Lower::image`]).
+    pub things: fn(&Node) -> bool,
+}
+
+impl NodeDef {
+    /// A node that knows of no things.
+    pub const fn new(
+        spec: &'static NodeSpec,
+        lower: for<'b> fn(&mut Lower<'_, 'b>, &Node) -> Bundle<'b>,
+    ) -> Self {
+        Self {
+            spec,
+            lower,
+            things: |_| false,
+        }
+    }
+
+    /// One that gives things numbers where this holds.
+    pub const fn of_things(self, things: fn(&Node) -> bool) -> Self {
+        Self { things, ..self }
+    }
+}
