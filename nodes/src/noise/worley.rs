@@ -6,13 +6,16 @@
 //! noise by the regression of the true average on it, whose slope was measured by size (`shape`).
 
 mod shape;
+pub(crate) mod space;
 mod taps;
 
 pub(crate) use shape::{Output, Worley};
 
 use super::cell::lattice_seed;
 use super::cell::place::{called, declared, declared_spread, field, window_start};
+use super::components::Hash;
 use super::field::{Field, Spread};
+use super::jenkins;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
@@ -51,7 +54,12 @@ fn search<'b>(
     any: Bool<'b>,
 ) -> Vec<Float<'b>> {
     let b = x.builder();
-    let counts = reach.map(|reach| CELLS - (reach * -2.0).floor());
+    // MaterialX looks into the nearest nine cells alone.
+    let cells = match worley.hash {
+        Hash::Mipless => CELLS,
+        Hash::Materialx => 3.0,
+    };
+    let counts = reach.map(|reach| cells - (reach * -2.0).floor());
     let [columns, rows] = counts.map(|count| count.to_int().to_uint());
     let shared = Rows {
         start_y: window_start(y, counts[1]),
@@ -59,7 +67,10 @@ fn search<'b>(
         columns,
         cell_x,
         cell_y,
-        seed: lattice_seed(b, worley.seed, 0xa54f_f53a),
+        seed: match worley.hash {
+            Hash::Mipless => lattice_seed(b, worley.seed, 0xa54f_f53a),
+            Hash::Materialx => b.uint(jenkins::seed(worley.seed)),
+        },
     };
     let before = vec![Nearest::none(b, worley); places.len()];
     let nearest = b.fold(row, any.select(rows, 0u32), before, (shared, places));

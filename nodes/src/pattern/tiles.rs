@@ -14,6 +14,7 @@ use mipless_graph::{
 macro_rules! figures {
     ($($(#[$doc:meta])* $node:ident {
         tile: $tile:expr,
+        staggered: $lattice:ident, $rows:literal,
         aliases: $aliases:expr,
         summary: $summary:literal,
         inside: $inside:literal,
@@ -33,8 +34,7 @@ macro_rules! figures {
                     computes: concat!(
                         "With (u, v) = texcoord · uvtiling − uvoffset: out = 1 inside ", $inside,
                         " in the middle of every unit cell, else 0. Where the tiling is staggered, the \
-                        figures stand at the origin and in rows that are 0.866 cells apart and shifted by \
-                        half a cell, so that each has six neighbours.",
+                        figures stand ", $rows,
                     ),
                     statistics: concat!(
                         "Footprints whose minor axis is below 0.16 cells and whose major axis is below 1.3 \
@@ -70,7 +70,7 @@ macro_rules! figures {
             };
             NodeDef {
                 spec: &SPEC,
-                lower: |lower, node| tiles(lower, node, $tile),
+                lower: |lower, node| tiles(lower, node, Lattice::$lattice, $tile),
             }
         }
     )*};
@@ -80,6 +80,8 @@ figures! {
     /// Discs.
     tiledcircles {
         tile: |radius, _| Tile::Disc(radius),
+        staggered: Triangular, "at the origin and in rows that are 0.866 cells apart and shifted by half a \
+            cell, so that each has six neighbours.",
         aliases: &["dots", "polka_dots", "tiled_circles"],
         summary: "A disc in every cell.",
         inside: "a disc of diameter size",
@@ -93,6 +95,8 @@ figures! {
     /// Hexagons with a corner up.
     tiledhexagons {
         tile: hexagon,
+        staggered: Triangular, "at the origin and in rows that are 0.866 cells apart and shifted by half a \
+            cell, so that each has six neighbours.",
         aliases: &["beehive", "honeycomb", "hexagons", "tiled_hexagons"],
         summary: "A hexagon in every cell.",
         inside: "a regular hexagon of width size, with a corner up,",
@@ -105,6 +109,7 @@ figures! {
     /// Cloverleafs.
     tiledcloverleafs {
         tile: cloverleaf,
+        staggered: Quincunx, "at the corners and in the middles of the cells.",
         aliases: &["cloverleafs", "quatrefoils", "tiled_cloverleafs"],
         summary: "A cloverleaf in every cell.",
         inside: "a `cloverleaf` of width size, with 24 edges a half of its outline,",
@@ -116,15 +121,17 @@ figures! {
     }
 }
 
-/// The tiling of a node, as a colour; `tile` is what stands in a cell, of a radius and perhaps staggered.
+/// The tiling of a node, as a colour; `tile` is what stands in a cell, of a radius and perhaps staggered,
+/// then at the sites of the lattice `otherwise`.
 fn tiles<'b>(
     lower: &mut Lower<'_, 'b>,
     node: &Node,
+    otherwise: Lattice,
     tile: impl FnOnce(f64, bool) -> Tile,
 ) -> Bundle<'b> {
     let staggered = lower.flag(node, "staggered");
     let lattice = if staggered {
-        Lattice::Triangular
+        otherwise
     } else {
         Lattice::Square
     };

@@ -6,9 +6,10 @@
 use super::passed::{Passed, passed};
 use super::place::declared;
 use super::{
-    Cells, Filtered, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside,
-    lattice_seed, number, report, row, window,
+    Cells, Filtered, Lattice, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading,
+    inside, report, row, window,
 };
+use crate::noise::components::Hash;
 use crate::noise::period::wrapped;
 use crate::noise::volume::{Spread, at};
 use mipless_codegen::Lower;
@@ -23,18 +24,21 @@ const INSIDE: f32 = 1.0 / 1024.0;
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
-    seed: i32,
-    period: i32,
+    lattice: Lattice,
 ) -> Signal<'b> {
     let (mode, b) = (lower.mode(), lower.b());
     // A surface at 0, as every flat view is, must not lie on faces of cells: half of a footprint would be
-    // in another layer at every size.
-    let position: Vec<Signal<'b>> = (position.iter()).map(|axis| axis.offset(INSIDE)).collect();
+    // in another layer at every size. MaterialX's cells lie where they lie.
+    let inside = match lattice.hash {
+        Hash::Mipless => INSIDE,
+        Hash::Materialx => 0.0,
+    };
+    let position: Vec<Signal<'b>> = (position.iter()).map(|axis| axis.offset(inside)).collect();
     let position = &position[..];
     let spread = Spread::of(position, 1.0);
     report(lower, spread.size());
-    let key = format!("cells in space {mode:?} {seed} {period}");
-    let function = lower.function(&key, |module| build(module, mode, seed, period));
+    let key = format!("cells in space {mode:?} {lattice:?}");
+    let function = lower.function(&key, |module| build(module, mode, lattice));
     let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(Signal::place).collect();
     let captures = mode.filters().then_some(spread);
     let mut sums = b.call(&function, (places, captures));
@@ -51,9 +55,13 @@ pub(crate) fn filtered<'b>(
     at(lower, position, &sums)
 }
 
-/// The seed of a layer.
-fn layer_seed<'b>(layer: Int<'b>, seed: Uint<'b>, period: i32) -> Uint<'b> {
-    (wrapped(layer, period).to_uint() * 0x27d4_eb2f + seed).scramble()
+/// What the cells of a layer share: its seed, or its number, which MaterialX hashes with theirs.
+fn layer_seed<'b>(layer: Int<'b>, seed: Uint<'b>, lattice: Lattice) -> Uint<'b> {
+    let layer = wrapped(layer, lattice.period);
+    if lattice.hash == Hash::Materialx {
+        return layer.to_uint();
+    }
+    (layer.to_uint() * 0x27d4_eb2f + seed).scramble()
 }
 
 passed! {
@@ -94,8 +102,8 @@ passed! {
 }
 
 /// One layer of cells, the body of a fold.
-fn layer(module: &mut Module, period: i32) -> FunctionRef {
-    let row = row(module, period);
+fn layer(module: &mut Module, lattice: Lattice) -> FunctionRef {
+    let row = row(module, lattice, true);
     let b = &Builder::new("cell_layer", "One layer of cells.");
     let index = b.uint_param("index");
     let sums = LayerSums::declare(b);
@@ -122,7 +130,7 @@ fn layer(module: &mut Module, period: i32) -> FunctionRef {
     let cells = Cells {
         centre: layers.centre,
         origin: [layers.cell_x, layers.cell_y],
-        seed: layer_seed(layers.cell_z + place.to_int(), layers.seed, period),
+        seed: layer_seed(layers.cell_z + place.to_int(), layers.seed, lattice),
         fade: layers.fade,
     };
     let plane = Plane::of(&row, *mean, (covariance, determinant), &cells);
@@ -140,15 +148,15 @@ fn layer(module: &mut Module, period: i32) -> FunctionRef {
     b.finish(module)
 }
 
-fn build(module: &mut Module, mode: Mode, seed: i32, period: i32) -> FunctionRef {
-    let layer = mode.filters().then(|| layer(module, period));
+fn build(module: &mut Module, mode: Mode, lattice: Lattice) -> FunctionRef {
+    let layer = mode.filters().then(|| layer(module, lattice));
     let b = &Builder::new("cells_in_space", "Filtered random cells in space.");
     let (origin, [x, y, z]) = declared::<3>(b);
     let [cell_x, cell_y, cell_z] = origin;
-    let seed = lattice_seed(b, seed, 0x510e_527f);
+    let seed = lattice.scrambled(b, 0x510e_527f);
     let [column, row, own] =
         [(cell_x, x), (cell_y, y), (cell_z, z)].map(|(cell, at)| cell + at.floor().to_int());
-    let centre = number([column, row], layer_seed(own, seed, period), period);
+    let centre = lattice.in_layer([column, row], layer_seed(own, seed, lattice));
     let Some(layer) = layer else {
         b.result("mean", centre);
         return b.finish(module);

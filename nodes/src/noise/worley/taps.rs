@@ -3,6 +3,9 @@
 use super::shape::{Output, Worley};
 use crate::noise::cell::passed::{Passed, passed};
 use crate::noise::cell::{hash, row_word, uniform};
+use crate::noise::components::Hash;
+use crate::noise::jenkins;
+use crate::noise::period::wrapped;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Uint, Vec2};
 
 /// x, y, weight: a unit Gaussian's integral to degree 5 (Stroud, E₂^{r²} 5-1).
@@ -22,9 +25,10 @@ const FAR: f32 = 1e6;
 /// What is known of the points nearest to a place: as much as the noise reads.
 #[derive(Clone, Copy)]
 pub(super) struct Nearest<'b> {
-    /// The squared distances of the nearest and of the second.
+    /// The squared distances of the nearest, of the second and of the third.
     first: Float<'b>,
     second: Option<Float<'b>>,
+    third: Option<Float<'b>>,
     /// Their numbers.
     value: Option<Float<'b>>,
     other: Option<Float<'b>>,
@@ -32,15 +36,16 @@ pub(super) struct Nearest<'b> {
 
 impl<'b> Scalars<'b> for Nearest<'b> {
     fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
-        (self.first, self.second, self.value, self.other).each(visit);
+        (self.first, self.second, self.third, self.value, self.other).each(visit);
     }
 
     fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
-        let (first, second, value, other) =
-            (self.first, self.second, self.value, self.other).replaced(next);
+        let all = (self.first, self.second, self.third, self.value, self.other);
+        let (first, second, third, value, other) = all.replaced(next);
         Self {
             first,
             second,
+            third,
             value,
             other,
         }
@@ -55,13 +60,14 @@ impl<'b> Nearest<'b> {
         Self {
             first: far,
             second: two.then_some(far),
+            third: (worley.output == Output::Third).then_some(far),
             value: worley.solid.then_some(zero),
             other: (worley.solid && two).then_some(zero),
         }
     }
 
     /// The parameters of so many places.
-    fn declare(b: &'b Builder, worley: Worley, count: usize) -> Vec<Self> {
+    pub(super) fn declare(b: &'b Builder, worley: Worley, count: usize) -> Vec<Self> {
         let named = |tap: usize| {
             let none = Self::none(b, worley);
             let mut names = none.names().into_iter();
@@ -77,6 +83,7 @@ impl<'b> Nearest<'b> {
         let parts = [
             ("first", Some(self.first)),
             ("second", self.second),
+            ("third", self.third),
             ("value", self.value),
             ("other", self.other),
         ];
@@ -85,7 +92,7 @@ impl<'b> Nearest<'b> {
     }
 
     /// Gives it as the results of a place.
-    fn results(&self, b: &'b Builder, tap: usize) {
+    pub(super) fn results(&self, b: &'b Builder, tap: usize) {
         for (name, part) in self.names().into_iter().zip(self.scalars()) {
             b.result(format!("{name}_{tap}"), part);
         }
@@ -103,20 +110,27 @@ impl<'b> Nearest<'b> {
             Output::First => first(),
             Output::Second => second(),
             Output::Difference => second() - first(),
+            Output::Third => of(self.other, self.third),
         }
     }
 
     /// One more point: its squared distance and its number.
-    fn nearer(self, q: Float<'b>, number: Float<'b>) -> Self {
+    pub(super) fn nearer(self, q: Float<'b>, number: Float<'b>) -> Self {
         let won = q.lt(self.first);
         let second = |second: Float<'b>| second.min(self.first.max(q));
         let other = || {
             let placed = q.lt(self.second?).select(number, self.other?);
             Some(won.select(self.value?, placed))
         };
+        // A third is what is left of three sorted numbers and a fourth.
+        let third = |third: Float<'b>| {
+            let second = self.second.expect("a third follows a second");
+            third.min(second.max(q))
+        };
         Self {
             first: self.first.min(q),
             second: self.second.map(second),
+            third: self.third.map(third),
             value: self.value.map(|value| won.select(number, value)),
             other: other(),
         }
@@ -142,6 +156,35 @@ passed! {
     }
 }
 
+/// Where in its cell a point lies before the jitter, and its number.
+fn random<'b>(
+    worley: Worley,
+    [column, row]: [Int<'b>; 2],
+    seed: Uint<'b>,
+) -> ([Float<'b>; 2], Float<'b>) {
+    let nothing = seed.builder().float(0.0);
+    match worley.hash {
+        Hash::Mipless => {
+            let hash = hash(column, row_word(row, seed, worley.period), worley.period);
+            let shares = [hash & 0xffff, hash >> 16].map(|bits| bits.to_float() * (1.0 / 65536.0));
+            let channel = u32::from(worley.channel.unwrap_or_default());
+            let number = || uniform((hash ^ (0x9e37_79b9 + channel)).scramble());
+            (shares, if worley.solid { number() } else { nothing })
+        }
+        Hash::Materialx => {
+            let [x, y] = [column, row].map(|cell| wrapped(cell, worley.period).to_uint());
+            let of =
+                |channel: u32| jenkins::unit(jenkins::space([x, y, seed.literal(channel)], seed));
+            let number = match worley.channel {
+                _ if !worley.solid => nothing,
+                Some(channel) => of(u32::from(channel)),
+                None => jenkins::unit(jenkins::plane([x, y], seed)),
+            };
+            ([of(0), of(1)], number)
+        }
+    }
+}
+
 /// The point of one cell, the body of a fold over columns.
 fn column(module: &mut Module, worley: Worley, count: usize) -> FunctionRef {
     let b = &Builder::new("worley_column", "The point of one cell.");
@@ -150,17 +193,10 @@ fn column(module: &mut Module, worley: Worley, count: usize) -> FunctionRef {
     let row = Row::declare(b);
     let places = declared_places(b, count);
     let place_x = row.start_x + index.to_float();
-    let word = row_word(row.row, row.seed, worley.period);
-    let hash = hash(row.cell_x + place_x.to_int(), word, worley.period);
-    let point = [(hash & 0xffff, place_x), (hash >> 16, row.place_y)].map(|(bits, place)| {
-        let share = bits.to_float() * (1.0 / 65536.0);
-        place + ((share + -0.5) * worley.jitter + 0.5)
-    });
-    let number = if worley.solid {
-        uniform((hash ^ 0x9e37_79b9).scramble())
-    } else {
-        b.float(0.0)
-    };
+    let cell = [row.cell_x + place_x.to_int(), row.row];
+    let (shares, number) = random(worley, cell, row.seed);
+    let point = [(shares[0], place_x), (shares[1], row.place_y)]
+        .map(|(share, place)| place + ((share + -0.5) * worley.jitter + 0.5));
     for (tap, (nearest, place)) in nearest.into_iter().zip(places).enumerate() {
         let square = (place - Vec2(point)).norm2();
         nearest.nearer(square, number).results(b, tap);
