@@ -477,7 +477,7 @@ fn coordinates_keep_their_detail_far_from_the_origin() {
             "version": 1, "name": "far", "nodes": {
                 "uv": { "type": "texcoord" },
                 "place": { "type": "place2d", "inputs": {
-                    "texcoord": { "node": "uv" }, "scale": [0.5, 0.25], "rotate": rotate, "offset": [0.25, 0.5],
+                    "texcoord": { "node": "uv" }, "scale": [0.5, 0.25], "rotate": -rotate, "offset": [0.25, 0.5],
                     "pivot": [0.5, 0.5], "operationorder": order } },
                 "stripes": { "type": "stripes", "inputs": {
                     "texcoord": { "node": "place" }, "frequency": 1, "rotate": 90 } },

@@ -158,7 +158,31 @@ fn hexagon(radius: f64, staggered: bool) -> Tile {
 /// Edges of a quarter of a circle: a leaf is seldom large on the screen.
 const EDGES: usize = 6;
 
-fn cloverleaf(radius: f64, _: bool) -> Tile {
+fn cloverleaf(radius: f64, staggered: bool) -> Tile {
     let corners = quadrant(EDGES).into_iter();
-    Tile::Polygon(corners.map(|[x, y]| [radius * y, radius * x]).collect())
+    let quarter: Vec<[f64; 2]> = corners.map(|[x, y]| [radius * y, radius * x]).collect();
+    Tile::Polygon(if staggered {
+        within_diamond(&quarter)
+    } else {
+        quarter
+    })
+}
+
+/// What of a figure is nearer to its site than to those of a quincunx around it, |x| + |y| ≤ ½. Leaves
+/// larger than 0.83 reach into their neighbours', which are their mirror images: what is cut off lies in
+/// these.
+fn within_diamond(quarter: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let beyond = |[y, x]: [f64; 2]| x + y - 0.5;
+    let mut cut = Vec::with_capacity(quarter.len() + 2);
+    for pair in quarter.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        cut.push([from[0], from[1].min(0.5 - from[0])]);
+        let [before, after] = [from, to].map(beyond);
+        if before * after < 0.0 {
+            let share = before / (before - after);
+            cut.push([0, 1].map(|i| from[i] + share * (to[i] - from[i])));
+        }
+    }
+    cut.extend(quarter.last().map(|&[y, x]| [y, x.min(0.5 - y)]));
+    cut
 }

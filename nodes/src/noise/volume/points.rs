@@ -87,13 +87,13 @@ impl<'b> Points<'b> {
     pub(super) fn declare(b: &'b Builder, kind: Kind, tiles: bool) -> Self {
         let places = ["x", "y", "z"].map(|axis| format!("place_{axis}"));
         Self {
-            place: matches!(kind, Kind::Materialx(_))
-                .then(|| places.map(|name| b.uint_param(name))),
             key: b.uint_param("key"),
             tile: tiles.then(|| Tile {
                 origin: ["x", "y", "z"].map(|axis| b.float_param(format!("origin_{axis}"))),
                 period: b.float_param("period"),
             }),
+            place: matches!(kind, Kind::Materialx(_))
+                .then(|| places.map(|name| b.uint_param(name))),
         }
     }
 }
