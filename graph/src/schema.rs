@@ -235,7 +235,7 @@ fn port(port: &PortSpec) -> Value {
             json!({ "type": "integer", "minimum": 0, "maximum": names.len() - 1 }),
         ],
         PortType::Stops => vec![json!({ "$ref": "#/$defs/stops" })],
-        PortType::Matrix => vec![9, 16]
+        PortType::Matrix => [9, 16]
             .into_iter()
             .map(|count| json!({ "type": "array", "items": { "type": "number" }, "minItems": count, "maxItems": count }))
             .collect(),
