@@ -190,6 +190,8 @@ fn node(spec: &NodeSpec) -> Value {
         OutputType::Exactly(ty) => ty.name(),
         OutputType::Widest | OutputType::Whole => "the widest of the inputs",
         OutputType::Named(_) => "the type that is named",
+        OutputType::Joined => "the inputs' components together",
+        OutputType::Colored => "the type of the colour",
         OutputType::Stops => "the type of the stops",
         OutputType::Picture { .. } => "the type that is named, or that of the stops",
     };
@@ -228,11 +230,20 @@ fn port(port: &PortSpec) -> Value {
     };
     let color = || json!({ "$ref": "#/$defs/color" });
     let mut literals = match port.ty {
-        PortType::Choice(names) => vec![json!({ "enum": names })],
+        PortType::Choice(names) => vec![
+            json!({ "enum": names }),
+            json!({ "type": "integer", "minimum": 0, "maximum": names.len() - 1 }),
+        ],
         PortType::Stops => vec![json!({ "$ref": "#/$defs/stops" })],
-        PortType::Any => vec![number(), list([1, 4]), color()],
+        PortType::Matrix => [9, 16]
+            .into_iter()
+            .map(|count| json!({ "type": "array", "items": { "type": "number" }, "minItems": count, "maxItems": count }))
+            .collect(),
+        PortType::Any | PortType::Each | PortType::Own | PortType::Color => {
+            vec![number(), list([1, 4]), color()]
+        }
         PortType::Exactly(ty) => match ty {
-            Type::Float => vec![number(), list([1, 1])],
+            Type::Float => vec![number(), list([1, 1]), json!({ "type": "boolean" })],
             Type::Integer => vec![bounds(json!({ "type": "integer" }))],
             Type::Boolean => vec![json!({ "type": "boolean" })],
             Type::Vector2 => vec![number(), list([1, 2])],
@@ -274,7 +285,7 @@ fn default(port: &PortSpec) -> Option<Value> {
                 .map(|(at, x)| json!({ "at": decimal(*at), "value": decimal(*x) }))
                 .collect()
         }
-        Default::Surface => return None,
+        Default::Surface | Default::Identity => return None,
     })
 }
 

@@ -48,10 +48,25 @@ pub enum PortType {
     /// Any of `float`, `vector2…4`, `color3`, `color4`: the node's own type is the widest of all
     /// such ports, and each is promoted to it.
     Any,
+    /// As [`PortType::Any`], but a float stays one: what acts on all components alike.
+    Each,
+    /// Any of these types, whatever the others have.
+    Own,
+    /// `color3`, or `color4` where what is connected has an alpha.
+    Color,
     /// One of these names; always uniform.
     Choice(&'static [&'static str]),
     /// A list of `{ "at": number, "value": number or colour }`; always uniform.
     Stops,
+    /// A square matrix: a list of 9 or 16 numbers; always uniform.
+    Matrix,
+}
+
+impl PortType {
+    /// Whether the port has its type in common with others.
+    pub const fn is_common(&self) -> bool {
+        matches!(self, Self::Any | Self::Each)
+    }
 }
 
 /// What an unconnected port holds.
@@ -75,6 +90,8 @@ pub enum Default {
     Stops(&'static [(f32, f32)]),
     /// The surface's texture coordinates.
     Surface,
+    /// The matrix of three rows that changes nothing.
+    Identity,
 }
 
 /// The numbers that a port accepts, and those that an editor offers.
@@ -164,6 +181,7 @@ impl PortSpec {
             ty,
             PortType::Choice(_)
                 | PortType::Stops
+                | PortType::Matrix
                 | PortType::Exactly(Type::String | Type::Filename)
         );
         Self {
@@ -208,6 +226,11 @@ pub enum OutputType {
     Whole,
     /// The type that the [`PortType::Choice`] input of this name names.
     Named(&'static str),
+    /// That of the [`PortType::Color`] input.
+    Colored,
+    /// The components of the [`PortType::Own`] inputs one after another: a colour where one of
+    /// them is, else a vector.
+    Joined,
     /// The type of the values of the [`PortType::Stops`] input.
     Stops,
     /// The type that the [`PortType::Choice`] input `named` names where the [`Type::Filename`] input

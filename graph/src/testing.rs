@@ -185,8 +185,8 @@ static CHECKER: NodeSpec = spec(
     OutputType::Exactly(Type::Color3),
     |_| Behaviour::Pattern,
 );
-static LUMINANCE: NodeSpec = spec(
-    "luminance",
+static EXTRACT: NodeSpec = spec(
+    "extract",
     &[PortSpec::new(
         "in",
         PortType::Exactly(Type::Color3),
@@ -208,7 +208,7 @@ pub(crate) static SPECS: &[&NodeSpec] = &[
     &SIN,
     &RAMP,
     &CHECKER,
-    &LUMINANCE,
+    &EXTRACT,
     &PICTURE,
 ];
 

@@ -74,14 +74,16 @@ impl Type {
         }
     }
 
-    /// The type that two meeting types are promoted to: floats (and integers, as floats) broadcast,
+    /// The type that two meeting types are promoted to: floats (integers and truth values are floats) broadcast,
     /// `color3` with `color4` gives `color4`; colours and vectors do not mix.
     pub fn widest(self, other: Self) -> Option<Self> {
-        use Type::{Color3, Color4, Float, Integer};
+        use Type::{Boolean, Color3, Color4, Float, Integer};
         match (self, other) {
             (a, b) if a == b => Some(a),
-            (Float | Integer, Float | Integer) => Some(Float),
-            (Float | Integer, wide) | (wide, Float | Integer) if wide.components() > 1 => {
+            (Float | Integer | Boolean, Float | Integer | Boolean) => Some(Float),
+            (Float | Integer | Boolean, wide) | (wide, Float | Integer | Boolean)
+                if wide.components() > 1 =>
+            {
                 Some(wide)
             }
             (Color3, Color4) | (Color4, Color3) => Some(Color4),
@@ -146,6 +148,8 @@ pub enum Literal {
     Text(String),
     /// The stops of a ramp.
     Stops(Stops),
+    /// A square matrix of 9 or 16 numbers, as MaterialX writes it.
+    Matrix(Vec<f32>),
 }
 
 impl Literal {
@@ -154,24 +158,25 @@ impl Literal {
         Self::Numbers(Type::Float, [x, 0.0, 0.0, 0.0])
     }
 
-    /// The numbers of the value, one a component; empty for text and stops.
+    /// The numbers of the value, one a component; empty for text, stops and matrices.
     pub fn numbers(&self) -> Vec<f32> {
         match self {
             Self::Numbers(ty, numbers) => numbers[..ty.components()].to_vec(),
             Self::Integer(i) => vec![*i as f32],
             Self::Boolean(b) => vec![f32::from(u8::from(*b))],
-            Self::Text(_) | Self::Stops(_) => Vec::new(),
+            Self::Text(_) | Self::Stops(_) | Self::Matrix(_) => Vec::new(),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Type::{Color3, Color4, Float, Vector2, Vector3};
+    use super::Type::{Boolean, Color3, Color4, Float, Vector2, Vector3};
 
     #[test]
     fn promotions_are_those_of_materialx() {
         assert_eq!(Float.widest(Color3), Some(Color3));
+        assert_eq!(Boolean.widest(Float), Some(Float));
         assert_eq!(Color4.widest(Color3), Some(Color4));
         assert_eq!(Color3.widest(Vector3), None);
         assert_eq!(Vector2.widest(Vector3), None);

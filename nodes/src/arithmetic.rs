@@ -2,7 +2,10 @@
 
 mod blend;
 mod comparison;
+mod component;
 mod extremum;
+mod logic;
+mod matte;
 mod smooth;
 mod sum;
 pub(crate) mod vector;
@@ -10,6 +13,7 @@ mod vectorproduct;
 
 room! {
     sum::add,
+    logic::and,
     atan2,
     blend::burn,
     vectorproduct::crossproduct,
@@ -23,15 +27,21 @@ room! {
     comparison::ifequal,
     comparison::ifgreater,
     comparison::ifgreatereq,
+    matte::inside,
     blend::lighten,
     blend::linearlight,
     vector::magnitude,
     extremum::max,
+    component::maxcomponent,
     extremum::min,
+    component::mincomponent,
     blend::minus,
     mix,
     multiply,
     normalize,
+    logic::not,
+    logic::or,
+    matte::outside,
     blend::overlay,
     blend::plus,
     blend::screen,
@@ -40,4 +50,5 @@ room! {
     blend::softlight,
     sum::subtract,
     switch,
+    logic::xor,
 }

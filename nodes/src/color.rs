@@ -3,6 +3,7 @@
 mod alpha;
 mod composite;
 pub(crate) mod hsv;
+mod srgb;
 pub(crate) mod stops;
 
 room! {
@@ -14,6 +15,7 @@ room! {
     disjointover,
     hsvadjust,
     hsvtorgb,
+    srgb::lineartosrgb,
     luminance,
     composite::mask,
     composite::matte,
@@ -23,5 +25,6 @@ room! {
     composite::r#in,
     rgbtohsv,
     saturate,
+    srgb::srgbtolinear,
     alpha::unpremult,
 }

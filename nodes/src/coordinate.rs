@@ -11,5 +11,6 @@ room! {
     rotate2d,
     rotate3d,
     swirl,
+    transformmatrix,
     warp,
 }

@@ -3,9 +3,11 @@
 pub(crate) mod affine;
 pub(crate) mod bend;
 pub(crate) mod cell;
+pub(crate) mod components;
 pub(crate) mod field;
 pub(crate) mod gabor;
 pub(crate) mod hash;
+pub(crate) mod jenkins;
 pub(crate) mod kernel;
 pub(crate) mod lattice;
 pub(crate) mod layers;
@@ -42,7 +44,10 @@ room! {
     spectralnoise2d,
     turbulence2d,
     unifiednoise2d,
+    unifiednoise3d,
     valuenoise2d,
     whitenoise2d,
     worleynoise2d with things,
+    worleynoise2d,
+    worleynoise3d,
 }

@@ -65,21 +65,24 @@ pub fn page(def: &NodeDef) -> String {
 fn is_numeric(port: &PortSpec) -> bool {
     match port.ty {
         PortType::Exactly(ty) => ty.components() > 0 && ty != mipless_graph::Type::Boolean,
-        PortType::Any => true,
-        PortType::Choice(_) | PortType::Stops => false,
+        PortType::Any | PortType::Each | PortType::Own | PortType::Color => true,
+        PortType::Choice(_) | PortType::Stops | PortType::Matrix => false,
     }
 }
 
 fn type_text(port: &PortSpec) -> String {
     match port.ty {
         PortType::Exactly(ty) => ty.name().to_owned(),
-        PortType::Any => "float, vector or colour".to_owned(),
+        PortType::Any | PortType::Own => "float, vector or colour".to_owned(),
+        PortType::Color => "color3 or color4".to_owned(),
+        PortType::Each => "float, or the type of the others".to_owned(),
         PortType::Choice(names) => names
             .iter()
             .map(|name| format!("`{name}`"))
             .collect::<Vec<_>>()
             .join(" or "),
         PortType::Stops => "list of stops".to_owned(),
+        PortType::Matrix => "9 or 16 numbers".to_owned(),
     }
 }
 
@@ -99,6 +102,7 @@ fn default_text(port: &PortSpec) -> String {
             .collect::<Vec<_>>()
             .join(", "),
         Default::Surface => "the surface's uv".to_owned(),
+        Default::Identity => "the identity".to_owned(),
     }
 }
 
@@ -124,6 +128,8 @@ fn output_text(output: OutputType) -> &'static str {
         OutputType::Exactly(ty) => ty.name(),
         OutputType::Widest | OutputType::Whole => "the widest of the inputs'",
         OutputType::Named(_) => "the type that is named",
+        OutputType::Joined => "the inputs' components together",
+        OutputType::Colored => "that of the colour",
         OutputType::Stops => "that of the stops' values",
         OutputType::Picture { .. } => {
             "with a file the type that is named, else that of the stops' values"
@@ -152,6 +158,8 @@ fn describe_node(def: &NodeDef) -> Value {
         OutputType::Exactly(ty) => ty.name(),
         OutputType::Widest | OutputType::Whole => "widest",
         OutputType::Named(_) => "named",
+        OutputType::Joined => "joined",
+        OutputType::Colored => "colored",
         OutputType::Stops => "stops",
         OutputType::Picture { .. } => "named or stops",
     };
@@ -184,11 +192,15 @@ fn describe_port(port: &PortSpec) -> Value {
     match port.ty {
         PortType::Exactly(ty) => set("type", json!(ty.name())),
         PortType::Any => set("type", json!("any")),
+        PortType::Each => set("type", json!("each")),
+        PortType::Own => set("type", json!("own")),
+        PortType::Color => set("type", json!("color")),
         PortType::Choice(names) => {
             set("type", json!("string"));
             set("enum", json!(names))
         }
         PortType::Stops => set("type", json!("stops")),
+        PortType::Matrix => set("type", json!("matrix")),
     };
     set(
         "default",
@@ -202,6 +214,7 @@ fn describe_port(port: &PortSpec) -> Value {
             Default::Stops(stops) => (stops.iter())
                 .map(|&(at, value)| json!({ "at": number(at), "value": number(value) }))
                 .collect(),
+            Default::Identity => json!("identity"),
             Default::Surface => json!({ "surface": "texcoord" }),
         },
     );

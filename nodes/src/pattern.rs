@@ -5,6 +5,7 @@ mod bits;
 pub(crate) mod bond;
 pub(crate) mod disc;
 pub(crate) mod figure;
+mod gradient;
 pub(crate) mod harmonics;
 pub(crate) mod measure;
 pub(crate) mod pulse;
@@ -40,7 +41,9 @@ room! {
     hexagon,
     image,
     line,
+    gradient::ramp,
     ramp4,
+    gradient::ramp_gradient,
     ramp::ramplr,
     ramp::ramptb,
     shape,

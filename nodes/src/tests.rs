@@ -344,7 +344,7 @@ fn a_large_footprint_gives_the_far_field() {
 /// The luminance of #c08a52.
 fn far_luminance() -> f64 {
     let linear = |byte: f64| ((byte / 255.0 + 0.055) / 1.055f64).powf(2.4);
-    0.2126 * linear(192.0) + 0.7152 * linear(138.0) + 0.0722 * linear(82.0)
+    0.272_228_7 * linear(192.0) + 0.674_081_8 * linear(138.0) + 0.053_689_5 * linear(82.0)
 }
 
 #[test]
@@ -472,8 +472,9 @@ fn coordinates_keep_their_detail_far_from_the_origin() {
     let graph = |rotate: f32, order: &str| {
         json!({
             "version": 1, "name": "far", "nodes": {
+                "uv": { "type": "texcoord" },
                 "place": { "type": "place2d", "inputs": {
-                    "scale": [0.5, 0.25], "rotate": rotate, "offset": [0.25, 0.5],
+                    "texcoord": { "node": "uv" }, "scale": [0.5, 0.25], "rotate": -rotate, "offset": [0.25, 0.5],
                     "pivot": [0.5, 0.5], "operationorder": order } },
                 "stripes": { "type": "stripes", "inputs": {
                     "texcoord": { "node": "place" }, "frequency": 1, "rotate": 90 } },

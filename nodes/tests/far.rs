@@ -168,7 +168,7 @@ fn sources_on_a_surface_keep_their_detail_far_away() {
             )
         };
         hold(&format!("{node} {inputs}"), &graph("", ""));
-        let place = r#""p":{"type":"place2d","inputs":{"scale":[0.7,1.3],"rotate":27,"offset":[0.31,-4.2]}},"#;
+        let place = r#""uv":{"type":"texcoord"},"p":{"type":"place2d","inputs":{"texcoord":{"node":"uv"},"scale":[0.7,1.3],"rotate":-27,"offset":[0.31,-4.2]}},"#;
         hold(
             &format!("placed {node} {inputs}"),
             &graph(r#","texcoord":{"node":"p"}"#, place),

@@ -128,6 +128,25 @@ fn filtered_means_of_perlin_noise_are_those_of_dense_integration() {
     hold_means("noise2d quintic", PERLIN, 0.035, 0.025);
 }
 
+/// Variance 1: MaterialX's standard deviation is 0.3191 amplitude.
+const MATERIALX: &str = r#"{"version":1,"name":"n","nodes":{"n":{"type":"noise2d","inputs":{"amplitude":3.1336,"hash":"materialx"}}},"outputs":{"out":{"node":"n"}}}"#;
+
+/// MaterialX's gradients are another set of the same second moments: the filter is that of the
+/// quintic kernel, with the same bounds.
+#[test]
+fn filtered_means_of_materialx_noise_are_those_of_dense_integration() {
+    for (ratio, degrees) in [SHAPES[0], SHAPES[2]] {
+        for size in [0.03, 0.12, 0.4, 1.2] {
+            let minor = size / f64::sqrt(ratio);
+            let methods = [Method::Local, Method::Quad];
+            let found = errors(MATERIALX, minor, ratio, degrees, &methods);
+            println!("{ratio}:1 at {degrees}° at {size}: {found:.4?}");
+            let bound = if ratio > 1.0 { 0.025 } else { 0.035 };
+            assert!(found[0][0] <= bound, "{size}, {ratio}:1: {found:?}");
+        }
+    }
+}
+
 #[test]
 fn filtered_means_of_value_noise_are_those_of_dense_integration() {
     hold_means("valuenoise2d", VALUE, 0.018, 0.018);

@@ -157,7 +157,10 @@ fn correlation(x: &[f64], y: &[f64]) -> f64 {
 /// The defaults, and each choice of each port alone.
 fn variants(spec: &NodeSpec) -> Vec<String> {
     let mut variants = vec![String::new()];
-    for port in spec.inputs {
+    // How many components there are does not change the first, and MaterialX's hash is as it is.
+    let fixed = ["signature", "hash"];
+    let others = (spec.inputs.iter()).filter(|port| !fixed.contains(&port.name));
+    for port in others {
         if let PortType::Choice(names) = port.ty {
             let chosen = |name: &&str| format!(r#""{}":"{name}","#, port.name);
             variants.extend(names.iter().map(chosen));

@@ -75,7 +75,8 @@ const CHAINS: [(&str, &str); 5] = [
         "c7":{"type":"lighten","inputs":{"fg":{"node":"c6"},"bg":0.2}},
         "c8":{"type":"mix","inputs":{"bg":{"node":"c7"},"fg":[0.5,0.4,0.3],"mix":0.2}},
         "c9":{"type":"clamp","inputs":{"in":{"node":"c8"}}},
-        "o":{"type":"luminance","inputs":{"in":{"node":"c9"}}}"#,
+        "c10":{"type":"luminance","inputs":{"in":{"node":"c9"}}},
+        "o":{"type":"extract","inputs":{"in":{"node":"c10"}}}"#,
     ),
 ];
 

@@ -32,7 +32,7 @@ fn graph(count: usize) -> String {
         };
         write!(
             nodes,
-            r#""place{i}":{{"type":"place2d","inputs":{{"scale":[0.5,{scale}],"rotate":{i}}}}},
+            r#""place{i}":{{"type":"place2d","inputs":{{"texcoord":{{"node":"uv"}},"scale":[0.5,{scale}],"rotate":-{i}}}}},
             "noise{i}":{{"type":"fractal2d","inputs":{{"texcoord":{{"node":"place{i}"}},"frequency":{{"input":"scale"}},"seed":{i}}}}},
             "turb{i}":{{"type":"absval","inputs":{{"in":{{"node":"noise{i}"}}}}}},
             "grain{i}":{{"type":"noise2d","inputs":{{"frequency":16,"seed":{i}}}}},
@@ -49,7 +49,7 @@ fn graph(count: usize) -> String {
     }
     nodes.pop();
     format!(
-        r#"{{"version":1,"name":"bench","inputs":{{"scale":{{"type":"float","value":4,"min":0.5,"max":64}}}},"nodes":{{{nodes}}},"outputs":{{"out":{{"node":"mix{}"}}}}}}"#,
+        r#"{{"version":1,"name":"bench","inputs":{{"scale":{{"type":"float","value":4,"min":0.5,"max":64}}}},"nodes":{{"uv":{{"type":"texcoord"}},{nodes}}},"outputs":{{"out":{{"node":"mix{}"}}}}}}"#,
         count / 10 - 1
     )
 }

@@ -518,8 +518,9 @@ fn bounds(node: &Node) -> Option<Vec<[f32; 2]>> {
             };
             Some((0..node.ty.components()).map(of).collect())
         }
-        "step" | "smoothstep" | "fract" | "trianglewave" | "squarewave" | "stripes" | "shape"
-        | "circle" | "hexagon" | "grid" | "crosshatch" => all([0.0, 1.0]),
+        "step" | "smoothstep" | "fract" | "squarewave" | "stripes" | "shape" | "circle"
+        | "hexagon" | "grid" | "crosshatch" => all([0.0, 1.0]),
+        "trianglewave" => all([0.0, 0.5]),
         "sin" | "cos" | "sign" => all([-1.0, 1.0]),
         _ => None,
     }

@@ -16,6 +16,7 @@
 //! | `reach` | the values that the check says signals can have, and divisors that may be 0 |
 //! | `names` | whatever things are called, every target compiles |
 //! | `linear` | what a graph costs grows as the graph does |
+//! | `parity` | nodes with a name of MaterialX's compute at a point what its shader computes |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `importing`, `importing_json` | what each rule makes of documents of other tools |
 //! | `corpus` | public documents of other tools, where they are at hand |

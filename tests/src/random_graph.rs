@@ -296,9 +296,13 @@ impl Body {
         let mut stops_are = Type::Float;
         for port in spec.inputs {
             let choice = random.unit();
-            let typed = port.ty == PortType::Any || spec.output == OutputType::Named(port.name);
+            let scalar = port.default == Default::Choice("float");
+            let named = spec.output == OutputType::Named(port.name);
+            let typed = port.ty == PortType::Any || (named && !scalar);
             let kept = match (port.default, port.unit) {
                 (Default::Surface, _) => 0.6,
+                // Noises of one number are most of those that people have.
+                _ if named && scalar => 0.85,
                 _ if port.uniform => 0.4,
                 _ => 0.25,
             };
@@ -312,8 +316,14 @@ impl Body {
                     stops_are = if colors { Type::Color3 } else { Type::Float };
                     stops(random, colors)
                 }
+                PortType::Matrix => json!([0.8, 0.6, 0, -0.6, 0.8, 0, 0.1, 0.2, 1]),
                 PortType::Choice(names) => json!(random.choose(names)),
-                PortType::Exactly(ty) => {
+                PortType::Exactly(_) | PortType::Each | PortType::Own | PortType::Color => {
+                    let ty = match port.ty {
+                        PortType::Exactly(ty) => ty,
+                        PortType::Color => Type::Color3,
+                        _ => Type::Float,
+                    };
                     let from = connected
                         .then(|| self.pick(random, |made| made.converts_to(ty)))
                         .flatten();
@@ -400,6 +410,9 @@ fn output(spec: &NodeSpec, inputs: &Map<String, Value>, widest: Type, stops: Typ
         OutputType::Exactly(ty) => ty,
         OutputType::Widest | OutputType::Whole => widest,
         OutputType::Named(port) => named(port),
+        // Its parts are numbers here.
+        OutputType::Joined => Type::Vector2,
+        OutputType::Colored => Type::Color3,
         OutputType::Picture { file, named: port } if inputs.contains_key(file) => named(port),
         OutputType::Picture { .. } | OutputType::Stops => stops,
     }

@@ -72,6 +72,7 @@ fn values(port: &PortSpec) -> Vec<Value> {
             json!([{ "at": 0.1, "value": 0.2 }, { "at": 0.4, "value": 0.9 }, { "at": 0.7, "value": 0.3 }]),
             json!([{ "at": 0, "value": "#102030" }, { "at": 0.5, "value": "#f0e0a0" }]),
         ],
+        (PortType::Matrix, _) => vec![json!([1.2, 0.3, 0, -0.3, 0.8, 0, 0.1, 0.2, 1])],
         (PortType::Exactly(Type::String | Type::Filename), _) => Vec::new(),
         (PortType::Exactly(Type::Boolean), _) | (_, Default::Boolean(_)) => flags(),
         (PortType::Exactly(Type::Integer), _) => {

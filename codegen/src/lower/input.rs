@@ -119,16 +119,11 @@ impl<'b> Lower<'_, 'b> {
             .expect("an input is lowered before its user")
     }
 
-    /// Floats broadcast; a colour gains an alpha of 1.
+    /// Floats broadcast, to alpha too; a colour gains an alpha of 1.
     fn promote(&self, mut bundle: Bundle<'b>, to: Type) -> Bundle<'b> {
         let components = to.components();
         if bundle.len() == 1 && components > 1 {
-            // A float as a colour with alpha is opaque.
-            let opaque = to == Type::Color4;
             bundle = vec![bundle[0].clone(); components];
-            if opaque {
-                bundle[3] = Signal::constant(self.algebra.b, 1.0);
-            }
         }
         while bundle.len() < components {
             bundle.push(Signal::constant(self.algebra.b, 1.0));
@@ -180,6 +175,14 @@ impl<'b> Lower<'_, 'b> {
         match node.literal(port) {
             Literal::Stops(stops) => stops,
             other => panic!("{port} of {} is a ramp: {other:?}", node.spec.name),
+        }
+    }
+
+    /// The numbers of a uniform matrix.
+    pub fn matrix<'n>(&self, node: &'n Node, port: &str) -> &'n [f32] {
+        match node.literal(port) {
+            Literal::Matrix(numbers) => numbers,
+            other => panic!("{port} of {} is a matrix: {other:?}", node.spec.name),
         }
     }
 

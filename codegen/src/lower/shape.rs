@@ -59,6 +59,10 @@ pub(super) fn shape(compiler: &Compiler<'_>, entries: &[NodeId], nodes: &[usize]
                     words.extend([6, text.len() as u32]);
                     words.extend(text.bytes().map(u32::from));
                 }
+                Source::Literal(Literal::Matrix(numbers)) => {
+                    words.extend([8, numbers.len() as u32]);
+                    words.extend(numbers.iter().map(|x| x.to_bits()));
+                }
                 Source::Literal(Literal::Stops(ramp)) => {
                     words.extend([7, ramp.ty as u32, ramp.stops.len() as u32]);
                     for stop in &ramp.stops {

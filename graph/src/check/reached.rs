@@ -31,14 +31,14 @@ fn of_stops(stops: &Stops) -> Reach {
     values.reduce(Reach::hull).unwrap_or(Reach::ANY)
 }
 
-/// Floats broadcast; a colour gains an alpha of 1.
+/// Floats broadcast, to alpha too; a colour gains an alpha of 1.
 fn promoted(own: Reach, from: Type, to: Type) -> Reach {
     let mut reach = if from.components() == 1 {
         own.component(0)
     } else {
         own
     };
-    if to == Type::Color4 && from != Type::Color4 {
+    if to == Type::Color4 && from == Type::Color3 {
         reach.0[3] = crate::Interval::point(1.0);
     }
     reach

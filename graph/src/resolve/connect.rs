@@ -100,7 +100,6 @@ pub(super) fn origin(graph: &Graph, bound: &Bound) -> String {
 pub(super) fn conversion(specs: &[&'static NodeSpec], from: Type, to: Type) -> Option<String> {
     let known = |name: &&&str| specs.iter().any(|spec| spec.name == **name);
     let names: &[&str] = match (from, to) {
-        (Type::Color3 | Type::Color4, Type::Float) => &["luminance", "extract"],
         (_, Type::Float) => &["extract"],
         (_, Type::Vector2) => &["combine2", "convert"],
         (Type::Vector2 | Type::Vector3 | Type::Vector4, Type::Color3) => &["combine3", "convert"],

@@ -344,7 +344,26 @@ fn node(
         let ty = match port.ty {
             PortType::Exactly(ty) => ty,
             PortType::Any => common,
-            PortType::Choice(_) | PortType::Stops => Type::String,
+            PortType::Each | PortType::Own | PortType::Color => {
+                let written = match (wire, &bound) {
+                    (Some(Wire::Literal(value)), _) => {
+                        let color = port.ty == PortType::Color;
+                        literal::natural(value, if color { Type::Color4 } else { common })
+                    }
+                    (None, _) => Some(literal::default_type(port)),
+                    (_, Some(bound)) => Some(bound.seen),
+                    _ => None,
+                };
+                let float = |ty: Type| ty.components() == 1;
+                match (port.ty, written) {
+                    (PortType::Color, Some(Type::Color4)) => Type::Color4,
+                    (PortType::Color, _) => Type::Color3,
+                    (PortType::Each, Some(own)) if !float(own) => common,
+                    (_, Some(own)) if !float(own) => own,
+                    _ => Type::Float,
+                }
+            }
+            PortType::Choice(_) | PortType::Stops | PortType::Matrix => Type::String,
         };
         let input = match (wire, bound) {
             (None, _) => Some(match literal::default(port, ty) {
@@ -360,8 +379,8 @@ fn node(
                 },
             }),
             // Without the common type, what a literal should be is not known.
-            (Some(Wire::Literal(_)), _) if port.ty == PortType::Any && !sound => None,
-            (Some(_), _) if port.ty == PortType::Any && !fits => None,
+            (Some(Wire::Literal(_)), _) if port.ty.is_common() && !sound => None,
+            (Some(_), _) if port.ty.is_common() && !fits => None,
             (Some(Wire::Literal(value)), _) => match written(value, port.ty, ty) {
                 Ok(value) => {
                     if let Literal::Stops(read) = &value {
@@ -407,6 +426,10 @@ fn node(
         OutputType::Exactly(ty) => ty,
         OutputType::Widest | OutputType::Whole => common,
         OutputType::Named(port) => named(spec, &inputs, port),
+        OutputType::Colored => (spec.inputs.iter().zip(&inputs))
+            .find(|(port, _)| port.ty == PortType::Color)
+            .map_or(common, |(_, input)| input.ty),
+        OutputType::Joined => joined(context, &place, spec, &inputs)?,
         OutputType::Stops => stops,
         OutputType::Picture { file, .. } if text(spec, &inputs, file).is_empty() => stops,
         OutputType::Picture { named: port, .. } => named(spec, &inputs, port),
@@ -434,11 +457,14 @@ fn written(value: &Value, port: PortType, ty: Type) -> Result<Literal, literal::
     match port {
         PortType::Choice(names) => literal::choice(value, names),
         PortType::Stops => literal::stops(value),
-        PortType::Exactly(_) | PortType::Any => literal::literal(value, ty),
+        PortType::Matrix => literal::matrix(value),
+        PortType::Exactly(_) | PortType::Any | PortType::Each | PortType::Own | PortType::Color => {
+            literal::literal(value, ty)
+        }
     }
 }
 
-/// The widest type of the [`PortType::Any`] ports; connections come before literals, which adapt.
+/// The widest type of the ports that have one in common; connections come before literals, which adapt.
 fn common_type(
     context: &mut Context<'_>,
     graph: &Graph,
@@ -452,7 +478,7 @@ fn common_type(
         spec.inputs
             .iter()
             .enumerate()
-            .filter(|(_, port)| port.ty == PortType::Any)
+            .filter(|(_, port)| port.ty.is_common())
     };
     for (i, port) in any() {
         let Some(bound) = &bounds[i] else { continue };
@@ -486,10 +512,46 @@ fn common_type(
     Some(common)
 }
 
+/// The type of the components of the ports with types of their own, one after another.
+fn joined(
+    context: &mut Context<'_>,
+    place: &Place<'_, '_>,
+    spec: &NodeSpec,
+    inputs: &[Input],
+) -> Option<Type> {
+    let parts = (spec.inputs.iter().zip(inputs)).filter(|(port, _)| port.ty == PortType::Own);
+    let types: Vec<Type> = parts.map(|(_, input)| input.ty).collect();
+    let components: usize = types.iter().map(|ty| ty.components()).sum();
+    let color = types
+        .iter()
+        .any(|ty| matches!(ty, Type::Color3 | Type::Color4));
+    let ty = match (components, color) {
+        (2, _) => Some(Type::Vector2),
+        (3, false) => Some(Type::Vector3),
+        (3, true) => Some(Type::Color3),
+        (4, false) => Some(Type::Vector4),
+        (4, true) => Some(Type::Color4),
+        _ => None,
+    };
+    if ty.is_none() {
+        let message = format!(
+            "the inputs of `{}` have {components} components",
+            place.path
+        );
+        let diagnostic = place.node("type-mismatch", message);
+        context.report(diagnostic.help_if(Some("2, 3 or 4 make a vector or colour".to_owned())));
+    }
+    ty
+}
+
 /// The type that a choice names.
 fn named(spec: &NodeSpec, inputs: &[Input], port: &str) -> Type {
-    Type::by_name(text(spec, inputs, port))
-        .unwrap_or_else(|| panic!("`{port}` of {} names types", spec.name))
+    match Type::by_name(text(spec, inputs, port)) {
+        // Whole numbers and truth values are numbers.
+        Some(Type::Integer | Type::Boolean) => Type::Float,
+        Some(ty) => ty,
+        None => panic!("`{port}` of {} names types", spec.name),
+    }
 }
 
 /// What a uniform text says.

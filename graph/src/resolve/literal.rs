@@ -140,7 +140,7 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
 pub(super) fn natural(value: &Value, beside: Type) -> Option<Type> {
     let vectors = matches!(beside, Type::Vector2 | Type::Vector3 | Type::Vector4);
     match value {
-        Value::Number(_) => Some(Type::Float),
+        Value::Number(_) | Value::Bool(_) => Some(Type::Float),
         Value::Array(items) => match items.len() {
             1 => Some(Type::Float),
             2 => Some(Type::Vector2),
@@ -176,6 +176,8 @@ pub(super) fn literal(value: &Value, ty: Type) -> Result<Literal, Mistake> {
         }
         (Type::String | Type::Filename, Value::String(text)) => Ok(Literal::Text(text.clone())),
         (Type::String | Type::Filename | Type::Boolean | Type::Integer, _) => Err(mismatch()),
+        // A truth value where signals are: 1 or 0.
+        (Type::Float, Value::Bool(value)) => Ok(Literal::float(f32::from(u8::from(*value)))),
         (_, Value::Number(_)) => from_numbers(&[finite(value)?], ty).ok_or_else(mismatch),
         (_, Value::Array(items)) => {
             if items.len() > 4 {
@@ -205,6 +207,11 @@ pub(super) fn literal(value: &Value, ty: Type) -> Result<Literal, Mistake> {
 /// The name of one of a port's choices.
 pub(super) fn choice(value: &Value, names: &[&'static str]) -> Result<Literal, Mistake> {
     let listed = || format!("one of `{}`", names.join("`, `"));
+    // MaterialX counts some of its names.
+    let counted = value.as_u64().and_then(|index| names.get(index as usize));
+    if let Some(name) = counted {
+        return Ok(Literal::Text((*name).to_owned()));
+    }
     let Value::String(text) = value else {
         let message = format!("a name is wanted here, not {}", shown(value));
         return Err(Mistake::new("type-mismatch", message).help(listed()));
@@ -271,6 +278,17 @@ pub(super) fn stops(value: &Value) -> Result<Literal, Mistake> {
     Ok(Literal::Stops(Stops { ty, stops }))
 }
 
+/// A square matrix.
+pub(super) fn matrix(value: &Value) -> Result<Literal, Mistake> {
+    let items = value.as_array().map_or(&[][..], Vec::as_slice);
+    if !matches!(items.len(), 9 | 16) {
+        let message = format!("a matrix is wanted here, not {}", shown(value));
+        return Err(Mistake::new("type-mismatch", message).help("write a list of 9 or 16 numbers"));
+    }
+    let numbers: Result<Vec<f32>, Mistake> = items.iter().map(finite).collect();
+    Ok(Literal::Matrix(numbers?))
+}
+
 /// What an unconnected port holds, as a value of `ty`; `None` for the surface's coordinates.
 ///
 /// # Panics
@@ -282,6 +300,9 @@ pub(super) fn default(port: &PortSpec, ty: Type) -> Option<Literal> {
     };
     Some(match port.default {
         Default::Surface => return None,
+        Default::Identity => {
+            Literal::Matrix((0..9).map(|i| if i % 4 == 0 { 1.0 } else { 0.0 }).collect())
+        }
         Default::Float(x) if ty == Type::Integer => Literal::Integer(x as i32),
         Default::Float(x) => numbers(&[x]),
         Default::Integer(i) if ty == Type::Integer => Literal::Integer(i),
@@ -303,9 +324,16 @@ pub(super) fn default(port: &PortSpec, ty: Type) -> Option<Literal> {
     })
 }
 
-/// The type that the default of an [`PortType::Any`] port has by itself.
+/// The type that the default of a port of any type has by itself.
 pub(super) fn default_type(port: &PortSpec) -> Type {
-    debug_assert!(matches!(port.ty, PortType::Any), "{} has a type", port.name);
+    debug_assert!(
+        !matches!(
+            port.ty,
+            PortType::Exactly(_) | PortType::Choice(_) | PortType::Stops
+        ),
+        "{} has a type",
+        port.name
+    );
     match port.default {
         Default::Vector2(_) | Default::Surface => Type::Vector2,
         Default::Color3(_) => Type::Color3,
@@ -350,6 +378,18 @@ mod tests {
             rgb(Type::Color3, json!("#éaaaa")).unwrap_err().code,
             "bad-color"
         );
+    }
+
+    #[test]
+    fn names_are_counted_and_truth_values_are_numbers() {
+        let names = ["linear", "smooth", "step"];
+        assert_eq!(
+            choice(&json!(2), &names),
+            Ok(Literal::Text("step".to_owned()))
+        );
+        assert_eq!(choice(&json!(3), &names).unwrap_err().code, "type-mismatch");
+        assert_eq!(literal(&json!(true), Type::Float), Ok(Literal::float(1.0)));
+        assert_eq!(matrix(&json!([1, 2])).unwrap_err().code, "type-mismatch");
     }
 
     #[test]

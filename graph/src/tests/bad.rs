@@ -276,7 +276,7 @@ fn types_that_do_not_fit_say_why() {
     let wide = error(&nodes(
         r#""a": { "type": "colorramp", "inputs": { "in": { "node": "c" } } }, "c": { "type": "checkerboard" }"#,
     ));
-    assert_eq!(wide.help.as_deref(), Some("convert it with `luminance`"));
+    assert_eq!(wide.help.as_deref(), Some("convert it with `extract`"));
     let uniform = errors(&text(
         r#""inputs": { "k": { "type": "integer", "value": 3 } },
            "nodes": { "a": { "type": "fractal2d", "inputs": { "octaves": { "input": "k" } } } },

@@ -202,7 +202,10 @@ fn the_schema_knows_every_node_and_port() {
     );
     assert_eq!(
         ports["kernel"]["anyOf"],
-        json!([{ "enum": ["gaussian", "quadrupole"] }])
+        json!([
+            { "enum": ["gaussian", "quadrupole"] },
+            { "type": "integer", "minimum": 0, "maximum": 1 },
+        ])
     );
     assert_eq!(ports["texcoord"].get("default"), None);
     assert_eq!(

@@ -2,6 +2,7 @@
 
 use crate::componentwise::{composed, exposed, product, quotient, transfer};
 use crate::port::{any, number};
+use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Piecewise, Polynomial, Signal};
 use mipless_codegen::{Bundle, Lower, NodeDef};
 use mipless_graph::{
@@ -50,6 +51,7 @@ macro_rules! modes {
         references: ($($reference:tt)*),
         class: $class:expr,
         $(example: $before:literal => $layers:literal,)?
+        $(divisor: $divisor:expr,)?
         mode: $mode:expr,
     })*) => {$(
         pub(crate) const fn $node() -> NodeDef {
@@ -72,9 +74,11 @@ macro_rules! modes {
                 class: $class,
                 example: modes!(@ $node $($before => $layers)?),
             };
-            NodeDef::new(&SPEC, |lower, node| blend(lower, node, $mode))
+            NodeDef::new(&SPEC, |lower, node| blend(lower, node, $mode, modes!(@ divisor $($divisor)?)))
         }
     )*};
+    (@ divisor) => { |_| None };
+    (@ divisor $divisor:expr) => { $divisor };
     (@ $node:ident) => {
         modes!(@ $node "" => r#""fg": {"node": "bands"}, "bg": {"node": "noise"}, "mix": 0.8"#)
     };
@@ -109,13 +113,14 @@ modes! {
         aliases: &["color_burn", "burn_blend"],
         summary: "Darkens a signal by another.",
         computes: "1 − (1 − bg) / fg, without limits as in MaterialX. A divisor nearer to 0 than 1e-6 is \
-            moved to ±1e-6.",
+            moved to ±1e-6; a number nearer than 1e-8 makes all of it 0.",
         statistics: division!(),
         accuracy: (divisor),
         references: (marsaglia, isserlis; "burn"),
         class: divided,
         example: r#"    "high": {"type": "range", "inputs": {"in": {"node": "bands"}, "outlow": 0.5}},
 "# => r#""fg": {"node": "high"}, "bg": {"node": "noise"}"#,
+        divisor: |fg| Some(fg.flat_mean()),
         mode: |lower, fg, bg| (-quotient(lower, &(-bg).offset(1.0), fg)).offset(1.0),
     }
     darken {
@@ -147,13 +152,14 @@ modes! {
         aliases: &["color_dodge", "dodge_blend"],
         summary: "Brightens a signal by what another lacks of 1.",
         computes: "bg / (1 − fg), without limits as in MaterialX. A divisor nearer to 0 than 1e-6 is \
-            moved to ±1e-6.",
+            moved to ±1e-6; a number nearer than 1e-8 makes all of it 0.",
         statistics: division!(),
         accuracy: (divisor),
         references: (marsaglia, isserlis; "dodge"),
         class: divided,
         example: r#"    "low": {"type": "multiply", "inputs": {"in1": {"node": "bands"}, "in2": 0.4}},
 "# => r#""fg": {"node": "low"}, "bg": {"node": "noise"}"#,
+        divisor: |fg| Some(1.0 - fg.flat_mean()),
         mode: |lower, fg, bg| quotient(lower, bg, &(-fg).offset(1.0)),
     }
     hardlight {
@@ -263,11 +269,13 @@ fn linear(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-/// bg + mix (mode(fg, bg) − bg), for each component.
+/// bg + mix (mode(fg, bg) − bg), for each component; 0 where a divisor that is certain is, as in
+/// MaterialX.
 fn blend<'b>(
     lower: &mut Lower<'_, 'b>,
     node: &Node,
     mode: impl Fn(&mut Lower<'_, 'b>, &Signal<'b>, &Signal<'b>) -> Signal<'b>,
+    divisor: impl Fn(&Signal<'b>) -> Option<Float<'b>>,
 ) -> Bundle<'b> {
     let [fg, bg] = ["fg", "bg"].map(|port| exposed(lower, node, port));
     let share = lower.signal(node, "mix");
@@ -275,7 +283,11 @@ fn blend<'b>(
         (fg.iter().zip(&bg))
             .map(|(fg, bg)| {
                 let result = mode(lower, fg, bg);
-                lower.algebra.mix(bg, &result, &share)
+                let mixed = lower.algebra.mix(bg, &result, &share);
+                match divisor(fg).filter(|_| fg.is_certain()) {
+                    Some(divisor) => mixed * divisor.abs().lt(1e-8).select(0.0, 1.0),
+                    None => mixed,
+                }
             })
             .collect()
     })

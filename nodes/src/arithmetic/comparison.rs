@@ -1,18 +1,27 @@
 //! Choices by the comparison of two numbers.
 
 use crate::componentwise::binary;
+use crate::port;
 use crate::port::{any, number};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Range, Reach};
 
 /// What is compared, and the results.
-const CHOICE: &[PortSpec] = &[
-    number("value1", 1.0, "The first number that is compared.").range(Range::soft(-1.0, 1.0)),
-    number("value2", 0.0, "The second number that is compared.").range(Range::soft(-1.0, 1.0)),
-    any("in1", 0.0, "The result where the condition holds."),
-    any("in2", 0.0, "The result elsewhere."),
-];
+const fn ports(first: f32) -> [PortSpec; 5] {
+    [
+        number("value1", first, "The first number that is compared.").range(Range::soft(-1.0, 1.0)),
+        number("value2", 0.0, "The second number that is compared.").range(Range::soft(-1.0, 1.0)),
+        any("in1", 0.0, "The result where the condition holds."),
+        any("in2", 0.0, "The result elsewhere."),
+        port::choice(
+            "signature",
+            &["value", "boolean"],
+            "value",
+            "Whether the result is in1 or in2, or the truth of the condition: 1 or 0.",
+        ),
+    ]
+}
 
 macro_rules! comparisons {
     ($($node:ident {
@@ -22,6 +31,7 @@ macro_rules! comparisons {
         statistics: $statistics:literal,
         accuracy: $accuracy:literal,
         example: $before:literal => $values:literal, $other:literal,
+        first: $value1:literal,
         condition: |$first:ident, $second:ident| $condition:expr,
         thresholds: $thresholds:expr,
         branches: |$yes:ident, $no:ident| $branches:expr,
@@ -44,9 +54,12 @@ macro_rules! comparisons {
                         against dense numerical integration in f64."),
                     references: cite!(truncated, bussgang; stringify!($node)),
                 },
-                inputs: CHOICE,
+                inputs: const { &ports($value1) },
                 output: OutputType::Widest,
-                reach: |inputs| inputs.reach("in1").hull(inputs.reach("in2")),
+                reach: |inputs| match inputs.choice("signature") {
+                    "boolean" => Reach::of(0.0, 1.0),
+                    _ => inputs.reach("in1").hull(inputs.reach("in2")),
+                },
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "bands": {"type": "stripes", "inputs": {"frequency": 6}},
@@ -76,6 +89,7 @@ comparisons! {
     "u": {"type": "extract", "inputs": {"in": {"node": "uv"}, "index": 0}},
     "whole": {"type": "floor", "inputs": {"in": {"node": "u"}}},
 "# => r#""value1": {"node": "whole"}, "value2": 1"#, r#"{"node": "noise"}"#,
+        first: 0.0,
         condition: |first, second| first - second,
         thresholds: [-CLOSE, CLOSE],
         branches: |yes, no| vec![no.clone(), yes.clone(), no.clone()],
@@ -87,6 +101,7 @@ comparisons! {
         statistics: "",
         accuracy: "those of the function, ",
         example: "" => r#""value1": {"node": "noise"}, "value2": 0.45"#, "0.2",
+        first: 1.0,
         condition: |first, second| -(first - second),
         thresholds: [0.0],
         branches: |yes, no| vec![yes.clone(), no.clone()],
@@ -98,6 +113,7 @@ comparisons! {
         statistics: "",
         accuracy: "those of the function, ",
         example: "" => r#""value1": {"node": "noise"}, "value2": 0.45"#, "0.2",
+        first: 1.0,
         condition: |first, second| first - second,
         thresholds: [0.0],
         branches: |yes, no| vec![no.clone(), yes.clone()],
@@ -115,6 +131,11 @@ fn chosen<'b>(
     thresholds: &[f32],
     branches: impl Fn(&Signal<'b>, &Signal<'b>) -> Vec<Signal<'b>>,
 ) -> Bundle<'b> {
+    if lower.choice(node, "signature") == "boolean" {
+        let [yes, no] = [1.0, 0.0].map(|truth| Signal::constant(lower.b(), truth));
+        let branches = branches(&yes, &no);
+        return vec![(lower.algebra).selection(condition, thresholds, &branches)];
+    }
     binary(lower, node, ["in1", "in2"], |lower, yes, no| {
         (lower.algebra).selection(condition, thresholds, &branches(yes, no))
     })

@@ -24,7 +24,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         references: cite!(marsaglia, isserlis; "divide"),
     },
     inputs: &[
-        any("in1", 1.0, "The numerator.").range(Range::soft(-1.0, 1.0)),
+        any("in1", 0.0, "The numerator.").range(Range::soft(-1.0, 1.0)),
         any("in2", 1.0, "The divisor; 0 is refused.").range(Range::soft(0.1, 4.0).nonzero()),
     ],
     output: OutputType::Widest,

@@ -1,10 +1,10 @@
 //! Linear interpolation.
 
-use crate::componentwise::binary;
-use crate::port::{any, number};
+use crate::port::any;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach,
+    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
+    Range, Reach,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -13,7 +13,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Arithmetic,
     summary: "Goes from one signal to another by a mask.",
     doc: Doc {
-        computes: "out = bg + mix · (fg − bg), for each component. The mask is not limited to [0, 1].",
+        computes: "out = bg + mix · (fg − bg), for each component; the mask is one number, or \
+            one for each component. It is not limited to [0, 1].",
         statistics: "With a constant mask, or with a varying mask between constants, linear and exact. \
             With both varying, a product of the mask and fg − bg: exact in mean and variance for \
             jointly Gaussian signals, with the covariance between the mask and what it masks.",
@@ -24,7 +25,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     inputs: &[
         any("bg", 0.0, "The result where the mask is 0."),
         any("fg", 0.0, "The result where the mask is 1."),
-        number("mix", 0.0, "The mask.").range(Range::soft(0.0, 1.0)),
+        PortSpec::new("mix", PortType::Each, Default::Float(0.0), "The mask.")
+            .range(Range::soft(0.0, 1.0)),
     ],
     output: OutputType::Widest,
     reach: |inputs| Reach::mixed(inputs.reach("bg"), inputs.reach("fg"), inputs.reach("mix")),
@@ -45,9 +47,8 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 }
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let mask = lower.signal(node, "mix");
-    let ports = ["bg", "fg"];
-    binary(lower, node, ports, |lower, bg, fg| {
-        lower.algebra.mix(bg, fg, &mask)
-    })
+    let [bg, fg, mask] = ["bg", "fg", "mix"].map(|port| lower.bundle(node, port));
+    (bg.iter().zip(&fg).enumerate())
+        .map(|(i, (bg, fg))| lower.algebra.mix(bg, fg, &mask[i.min(mask.len() - 1)]))
+        .collect()
 }

@@ -21,7 +21,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         references: cite!(isserlis; "multiply"),
     },
     inputs: &[
-        any("in1", 1.0, "The first operand.").range(Range::soft(-1.0, 1.0)),
+        any("in1", 0.0, "The first operand.").range(Range::soft(-1.0, 1.0)),
         any("in2", 1.0, "The second operand.").range(Range::soft(-1.0, 1.0)),
     ],
     output: OutputType::Widest,

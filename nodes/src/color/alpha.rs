@@ -1,10 +1,11 @@
 //! A colour times its alpha, and without it.
 
 use crate::componentwise::{composed, exposed, product, quotient};
-use crate::port::exactly;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower, NodeDef};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Reach, Type,
+};
 
 macro_rules! operations {
     ($($node:ident {
@@ -29,7 +30,12 @@ macro_rules! operations {
                         numerical integration in f64."),
                     references: cite!(porter_duff, isserlis; stringify!($node)),
                 },
-                inputs: &[exactly(Type::Color4, "in", 0.0, "The colour and its alpha.")],
+                inputs: &[PortSpec::new(
+                    "in",
+                    PortType::Exactly(Type::Color4),
+                    Default::Color3([0.0; 3]),
+                    "The colour and its alpha.",
+                )],
                 output: OutputType::Exactly(Type::Color4),
                 reach: |_| Reach::ANY,
                 class: |_| Behaviour::Product,

@@ -1,14 +1,16 @@
 //! Colour correction.
 
 use crate::color::hsv::adjusted;
-use crate::color::luminance::REC_709;
+use crate::color::luminance::ACES_CG;
 use crate::color::saturate::saturated;
 use crate::componentwise::{composed, exposed};
-use crate::port::{exactly, number};
+use crate::port::number;
 use crate::transfer::levels::curved;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range, Reach,
+};
 use std::f32::consts::LN_2;
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -17,9 +19,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Color,
     summary: "Hue, saturation, gamma, lift, gain, contrast and exposure of a colour, in this order.",
     doc: Doc {
-        computes: "As MaterialX: the hue turns as in `hsvadjust`; `saturate`, with the Rec. 709 \
-            coefficients; sign(x) |x|^(1/gamma); x (1 − lift) + lift; times gain; (x − \
-            contrastpivot) contrast + contrastpivot; times 2^exposure.",
+        computes: "As MaterialX: the hue turns as in `hsvadjust`; `saturate`, with the coefficients \
+            of ACEScg; sign(x) |x|^(1/gamma); x (1 − lift) + lift; times gain; (x − \
+            contrastpivot) contrast + contrastpivot; times 2^exposure. An alpha is kept.",
         statistics: "Linear steps are exact. The hue by the cubature of `hsvadjust`, where it is not the \
             number 0; the gamma as in `levels`, where it is not the number 1. Of varying \
             parameters the means are used.",
@@ -30,7 +32,12 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         references: cite!(hexcone, stroud, bussgang; "colorcorrect"),
     },
     inputs: &[
-        exactly(Type::Color3, "in", 0.0, "The colour, linear Rec. 709."),
+        PortSpec::new(
+            "in",
+            PortType::Color,
+            Default::Color3([1.0; 3]),
+            "The colour, linear Rec. 709.",
+        ),
         number("hue", 0.0, "Turns to add to the hue.")
             .unit("turns")
             .range(Range::soft(-0.5, 0.5)),
@@ -45,7 +52,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             .unit("stops")
             .range(Range::soft(-4.0, 4.0)),
     ],
-    output: OutputType::Exactly(Type::Color3),
+    output: OutputType::Colored,
     reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "colorcorrect", r#"
@@ -57,16 +64,17 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 };
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let color = exposed(lower, node, "in");
+    let mut color = exposed(lower, node, "in");
+    let alpha = color.split_off(3);
     let [hue, gamma, lift, gain, contrast, pivot] =
         ["hue", "gamma", "lift", "gain", "contrast", "contrastpivot"]
             .map(|port| lower.number(node, port));
     let saturation = Signal::certain(lower.number(node, "saturation"));
     let exposure = lower.number(node, "exposure");
-    composed(lower, |lower| {
+    let mut out: Bundle<'b> = composed(lower, |lower| {
         let one = hue.literal(1.0);
         let turned = adjusted(lower, &color, [hue, one, one]);
-        let weights = REC_709.map(|weight| hue.literal(weight));
+        let weights = ACES_CG.map(|weight| hue.literal(weight));
         let color = saturated(lower, &turned, &saturation, &weights);
         let factor = (exposure * LN_2).clamp(-80.0, 80.0).exp();
         (color.iter())
@@ -76,5 +84,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
                 (x.offset(-pivot) * contrast).offset(pivot) * factor
             })
             .collect()
-    })
+    });
+    out.extend(alpha);
+    out
 }

@@ -12,7 +12,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Color,
     summary: "One layer over another, which do not overlap while there is room.",
     doc: Doc {
-        computes: composition!("(F + B min(1, (1 − f)/b), min(f + b, 1))"),
+        computes: composition!("(F + B, f + b) where f + b ≤ 1, else (F + B (1 − f)/b, 1)"),
         statistics: "The quotient and the minimum as `divide` and `min`, then a product with the \
             covariance. Approximate where the alphas vary.",
         accuracy: "For alphas at least four standard deviations above 0 the mean is within 0.005 and the \
@@ -37,7 +37,12 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
             return lower.algebra.minimum(&(&fg[3] + &bg[3]), &one);
         }
         let share = quotient(lower, &(&one - &fg[3]), &bg[3]);
-        let share = lower.algebra.minimum(&share, &one);
+        let share = if fg[3].is_certain() && bg[3].is_certain() {
+            let room = (fg[3].flat_mean() + bg[3].flat_mean()).le(1.0);
+            Signal::certain(room.select(1.0, share.flat_mean()))
+        } else {
+            lower.algebra.minimum(&share, &one)
+        };
         &fg[k] + product(lower, &bg[k], &share)
     })
 }

@@ -13,7 +13,8 @@ pub(crate) const ABSENCE: [(f32, f32); 4] = [
     (5.0 / 6.0, 0.0),
 ];
 
-/// Hue, saturation and value of a colour; a grey has hue 0, black saturation 0.
+/// Hue, saturation and value of a colour; a grey has hue 0, black and what is below it hue and
+/// saturation 0.
 fn to_hsv([red, green, blue]: [Float<'_>; 3]) -> [Float<'_>; 3] {
     let (low, high) = (red.min(green).min(blue), red.max(green).max(blue));
     let span = high - low;
@@ -29,15 +30,15 @@ fn to_hsv([red, green, blue]: [Float<'_>; 3]) -> [Float<'_>; 3] {
 
     let saturation = span / high.max(1e-9);
     [
-        span.gt(1e-9).select(hue, 0.0),
+        (span.gt(1e-9) & high.gt(1e-9)).select(hue, 0.0),
         high.gt(1e-9).select(saturation, 0.0),
         high,
     ]
 }
 
-/// The colour of a hue, a saturation and a value.
+/// The colour of a hue, a saturation, which is at least 0, and a value.
 pub(crate) fn to_rgb([hue, saturation, value]: [Float<'_>; 3]) -> [Float<'_>; 3] {
-    let chroma = saturation * value;
+    let chroma = saturation.max(0.0) * value;
     [0.0, -1.0 / 3.0, -2.0 / 3.0].map(|turn| {
         // 1 − (|6 fract(h + turn) − 3| − 1), limited to [0, 1].
         let turned = hue + turn;

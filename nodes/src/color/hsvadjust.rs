@@ -1,8 +1,8 @@
 //! Change of hue, saturation, value.
 
 use crate::color::hsv::adjusted;
+use crate::color::luminance::COLOR;
 use crate::componentwise::{exposed, numbers};
-use crate::port::exactly;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Reach, Type,
@@ -15,7 +15,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     summary: "Turns the hue of a colour and scales its saturation and value.",
     doc: Doc {
         computes: "out = the colour of (h + amount₁, s · amount₂, v · amount₃), as in `rgbtohsv` and \
-            `hsvtorgb`; nothing is limited.",
+            `hsvtorgb`; nothing is limited, and an alpha is kept.",
         statistics: "Where the first amount is the number 0, amount₃ (M + amount₂ (in − M)) with M the \
             largest channel, by Clark’s moments: a sum with the covariance that its terms have. \
             Else: By a cubature of degree 5 over the joint Gaussian of the three channels, \
@@ -30,7 +30,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         references: cite!(hexcone, stroud, clark; "hsvadjust"),
     },
     inputs: &[
-        exactly(Type::Color3, "in", 0.0, "The colour, linear Rec. 709."),
+        COLOR,
         PortSpec::new(
             "amount",
             PortType::Exactly(Type::Vector3),
@@ -38,7 +38,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             "Turns to add to the hue; factors of saturation and value.",
         ),
     ],
-    output: OutputType::Exactly(Type::Color3),
+    output: OutputType::Colored,
     reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "hsvadjust", r#"
@@ -50,7 +50,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 };
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let color = exposed(lower, node, "in");
+    let mut color = exposed(lower, node, "in");
+    let alpha = color.split_off(3);
     let amounts = numbers(lower, node, "amount");
-    adjusted(lower, &color, [amounts[0], amounts[1], amounts[2]])
+    let mut out = adjusted(lower, &color, [amounts[0], amounts[1], amounts[2]]);
+    out.extend(alpha);
+    out
 }

@@ -2,10 +2,11 @@
 
 use crate::color::hsv::ABSENCE;
 use crate::componentwise::{composed, exposed, product, transfer};
-use crate::port::exactly;
-use mipless_codegen::moments::{LinearWave, Signal};
+use mipless_codegen::moments::{LinearWave, Piecewise, Signal};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
+use mipless_graph::{
+    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Reach,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "hsvtorgb",
@@ -15,7 +16,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "For each channel v (1 − s w(h − k)), k = 0, ⅓, ⅔, where the wave w of period 1 is 0 \
             within a sixth of a turn, 1 beyond a third, and straight between. The hue is in \
-            turns; the colour is linear Rec. 709.",
+            turns; the colour is linear Rec. 709. A saturation below 0 counts as 0; an alpha is kept.",
         statistics: "The three waves as `trianglewave`: the piecewise function of the corners within \
             reach, or three damped harmonics; the products with the covariance that hue, \
             saturation and value have. A hue that turns fully gives the mean of all hues. Exact \
@@ -26,13 +27,13 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             numerical integration in f64.",
         references: cite!(hexcone, characteristic, isserlis; "hsvtorgb"),
     },
-    inputs: &[exactly(
-        Type::Color3,
+    inputs: &[PortSpec::new(
         "in",
-        0.0,
+        PortType::Color,
+        Default::Color3([0.0; 3]),
         "Hue in turns, saturation and value.",
     )],
-    output: OutputType::Exactly(Type::Color3),
+    output: OutputType::Colored,
     reach: |_| Reach::ANY,
     class: |_| Behaviour::Function,
     example: example! { "hsvtorgb", r#"
@@ -44,8 +45,13 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 };
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let hsv = exposed(lower, node, "in");
+    let mut hsv = exposed(lower, node, "in");
+    let alpha = hsv.split_off(3);
     composed(lower, |lower| {
+        if hsv[1].range[0] < 0.0 {
+            let hinge = Piecewise::hinge(lower.b());
+            hsv[1] = transfer(lower, &hsv[1], &hinge);
+        }
         let chroma = product(lower, &hsv[1], &hsv[2]);
         let wave = LinearWave::through(&ABSENCE);
         let channel = |turn: f32| {
@@ -57,6 +63,8 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
             let absence = transfer(lower, &hue, &wave);
             &hsv[2] - product(lower, &chroma, &absence)
         };
-        [0.0, -1.0 / 3.0, -2.0 / 3.0].map(channel).to_vec()
+        let mut out = [0.0, -1.0 / 3.0, -2.0 / 3.0].map(channel).to_vec();
+        out.extend(alpha);
+        out
     })
 }

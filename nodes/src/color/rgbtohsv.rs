@@ -1,10 +1,10 @@
 //! Hue, saturation, value.
 
 use crate::color::hsv::to_hsv_function;
+use crate::color::luminance::COLOR;
 use crate::componentwise::{composed, exposed};
-use crate::port::exactly;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach, Type};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "rgbtohsv",
@@ -14,7 +14,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "With M and m the largest and least channel: value M, saturation (M − m)/M, and the \
             hue in turns: (g − b)/(M − m)/6 where red is largest, ⅓ and ⅔ further where green and \
-            blue are; from 0 up to 1; 0 for a grey.",
+            blue are; from 0 up to 1; 0 for a grey; black and what is below it have saturation \
+            0. An alpha is kept.",
         statistics: "By a cubature of degree 5 over the joint Gaussian of the three channels, thirteen \
             evaluations with positive weights: the mean, the slope by each channel, and the rest \
             as a sum of squares. Approximate: the hue jumps from 1 to 0 at red and is free at \
@@ -27,13 +28,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             in f64.",
         references: cite!(hexcone, stroud, clark; "rgbtohsv"),
     },
-    inputs: &[exactly(
-        Type::Color3,
-        "in",
-        0.0,
-        "The colour, linear Rec. 709.",
-    )],
-    output: OutputType::Exactly(Type::Color3),
+    inputs: &[COLOR],
+    output: OutputType::Colored,
     reach: |_| Reach::ANY,
     class: |inputs| {
         if inputs.varies("in") {
@@ -54,7 +50,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 };
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let color = exposed(lower, node, "in");
+    let mut color = exposed(lower, node, "in");
+    let alpha = color.split_off(3);
     let b = lower.b();
     let function = lower.function("rgb_to_hsv", to_hsv_function);
     composed(lower, |lower| {
@@ -66,6 +63,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         });
         let largest = lower.algebra.maximum(&color[0], &color[1]);
         out.push(lower.algebra.maximum(&largest, &color[2]));
+        out.extend(alpha);
         out
     })
 }

@@ -1,13 +1,13 @@
 //! Saturation.
 
+use crate::color::luminance::{COLOR, LUMACOEFFS};
 use crate::componentwise::{composed, exposed, numbers, product, total};
-use crate::port::{exactly, number};
+use crate::port::number;
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
-    Range, Reach, Type,
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -16,8 +16,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Color,
     summary: "Moves a colour away from the grey of its luminance, or towards it.",
     doc: Doc {
-        computes: "out = L + amount (in − L) with L = lumacoeffs · in; linear Rec. 709, whose \
-            coefficients are the default.",
+        computes: "out = L + amount (in − L) with L = lumacoeffs · in, beside the alpha that in has. \
+            The coefficients are those of ACEScg, as in MaterialX.",
         statistics: "By a number, linear and exact as far as the covariances of the channels are carried. \
             A varying amount multiplies as `multiply` does. Of varying coefficients the means are \
             used.",
@@ -26,16 +26,11 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         references: cite!(rec709, linear; "saturate"),
     },
     inputs: &[
-        exactly(Type::Color3, "in", 0.0, "The colour, linear Rec. 709."),
+        COLOR,
         number("amount", 1.0, "0 is grey, 1 changes nothing.").range(Range::soft(0.0, 2.0)),
-        PortSpec::new(
-            "lumacoeffs",
-            PortType::Exactly(Type::Color3),
-            Default::Color3([0.2126, 0.7152, 0.0722]),
-            "The luminances of the primaries.",
-        ),
+        LUMACOEFFS,
     ],
-    output: OutputType::Exactly(Type::Color3),
+    output: OutputType::Colored,
     reach: |_| Reach::ANY,
     class,
     example: example! { "saturate", r#"
@@ -56,10 +51,13 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 }
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let color = exposed(lower, node, "in");
+    let mut color = exposed(lower, node, "in");
+    let alpha = color.split_off(3);
     let amount = lower.signal(node, "amount");
     let weights = numbers(lower, node, "lumacoeffs");
-    composed(lower, |lower| saturated(lower, &color, &amount, &weights))
+    let mut out = composed(lower, |lower| saturated(lower, &color, &amount, &weights));
+    out.extend(alpha);
+    out
 }
 
 /// L + amount (in − L).

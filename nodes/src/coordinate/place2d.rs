@@ -1,7 +1,6 @@
 //! Placement of texture coordinates.
 
 use crate::componentwise::{difference, quotient, sum};
-use crate::coordinate::place::TEXCOORD;
 use crate::coordinate::rotate2d::rotated;
 use crate::port;
 use crate::port::number;
@@ -26,8 +25,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "With R the rotation of `rotate2d`: for `SRT`, out = R((texcoord − pivot)/scale) − \
             offset + pivot; for `TRS`, out = R(texcoord − pivot − offset)/scale + pivot. Scale \
-            divides, so a scale of 2 makes the texture twice as large. In MaterialX rotate has the \
-            opposite sign, as in `rotate2d`.",
+            divides, so a scale of 2 makes the texture twice as large, and a rotation turns the \
+            texture counter-clockwise.",
         statistics: "With constant parameters, linear and exact: a position stays exactly Gaussian with \
             its footprint transformed. A varying rotation or scale goes through the closed forms \
             of `sin` and `divide` and a product, approximate.",
@@ -36,7 +35,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         references: cite!(heckbert; "place2d"),
     },
     inputs: &[
-        TEXCOORD,
+        port::pair("texcoord", [0.0, 0.0], "The coordinates.").unit("uv"),
         port::pair("pivot", [0.0, 0.0], "The point that stays in place.")
             .range(Range::soft(-1.0, 1.0))
             .unit("uv"),
@@ -47,9 +46,13 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         )
         .range(Range::soft(0.1, 10.0).nonzero())
         .unit("dimensionless"),
-        number("rotate", 0.0, "The angle, counter-clockwise.")
-            .range(Range::soft(-180.0, 180.0))
-            .unit("degrees"),
+        number(
+            "rotate",
+            0.0,
+            "The angle by which the texture turns counter-clockwise.",
+        )
+        .range(Range::soft(-180.0, 180.0))
+        .unit("degrees"),
         port::pair("offset", [0.0, 0.0], "The shift, which is subtracted.")
             .range(Range::soft(-1.0, 1.0))
             .unit("uv"),
@@ -64,7 +67,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     reach: |_| Reach::ANY,
     class,
     example: example! { "place2d" => "board", r#"
-    "place2d": { "type": "place2d", "inputs": { "pivot": [0.5, 0.5], "scale": [0.5, 0.25], "rotate": 20 } },
+    "uv": { "type": "texcoord" },
+    "place2d": { "type": "place2d", "inputs": { "texcoord": { "node": "uv" }, "pivot": [0.5, 0.5], "scale": [0.5, 0.25], "rotate": 20 } },
     "board": { "type": "checkerboard", "inputs": { "texcoord": { "node": "place2d" } } }
 "# },
 };
@@ -85,7 +89,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, pivot, scale, offset] =
         ["texcoord", "pivot", "scale", "offset"].map(|port| lower.bundle(node, port));
-    let angle = lower.signal(node, "rotate");
+    let angle = -lower.signal(node, "rotate");
     let scaled_first = lower.choice(node, "operationorder") == "SRT";
     let mut place = [0, 1].map(|i| difference(&texcoord[i], &pivot[i]));
     if scaled_first {

@@ -16,24 +16,19 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Coordinate,
     summary: "Turns a vector.",
     doc: Doc {
-        computes: "out = (c x − s y, s x + c y) with c and s the cosine and sine of the amount. A \
-            texture that is read at turned coordinates appears turned the other way. MaterialX's \
-            node of this name has the opposite direction, (c x + s y, c y − s x): its amount is the \
-            negative of this one.",
+        computes: "out = (c x + s y, c y − s x) with c and s the cosine and sine of the amount: \
+            clockwise, so that a texture that is read at turned coordinates appears turned \
+            counter-clockwise, as in MaterialX.",
         statistics: "By a constant angle, linear and exact: a position stays exactly Gaussian, with its \
             footprint turned. A varying angle goes through the closed forms of sine and cosine \
             and a product, as `sin` and `multiply` do.",
         accuracy: "Exact to rounding; multiples of 90 degrees are exact to the bit. Held by \
             `nodes/src/tests.rs`.",
-        references: cite!(
-            linear,
-            "The direction is counter-clockwise, as every angle of a document; names and \
-             defaults are those of the node `rotate2d` of the MaterialX 1.39 specification."
-        ),
+        references: cite!(linear; "rotate2d"),
     },
     inputs: &[
         port::pair("in", [0.0, 0.0], "The vector.").unit("uv"),
-        number("amount", 0.0, "The angle, counter-clockwise.")
+        number("amount", 0.0, "The angle, clockwise.")
             .range(Range::soft(-180.0, 180.0))
             .unit("degrees"),
     ],
@@ -58,7 +53,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let vector = lower.bundle(node, "in");
     let angle = lower.signal(node, "amount");
-    rotated(lower, [&vector[0], &vector[1]], &angle).to_vec()
+    rotated(lower, [&vector[0], &vector[1]], &-angle).to_vec()
 }
 
 /// A vector turned counter-clockwise by an angle in degrees.

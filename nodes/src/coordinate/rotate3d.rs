@@ -3,6 +3,8 @@
 use crate::componentwise::{numbers, product, sum};
 use crate::coordinate::rotate2d::turn;
 use crate::port::{exactly, number};
+use mipless_codegen::ir::Float;
+use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, PortType,
@@ -15,10 +17,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Coordinate,
     summary: "Turns a vector around an axis.",
     doc: Doc {
-        computes: "out = c p + s k × p + (1 − c)(k · p) k for p = in, with k the axis at length 1, and c and s \
-            the cosine and sine of the amount: counter-clockwise for who looks against the axis. The \
-            vector stays where the axis is 0. MaterialX's node of this name turns the other way, as \
-            its `rotate2d` does.",
+        computes: "out = c p − s k × p + (1 − c)(k · p) k for p = in, with k the axis at length 1, and c and s \
+            the cosine and sine of the amount: clockwise for who looks against the axis. The vector \
+            stays where the axis is 0.",
         statistics: "By a constant angle, linear and exact: a position stays exactly Gaussian, with its footprint \
             turned. A varying angle goes through the closed forms of sine and cosine and a product. Of a \
             varying axis the mean is used.",
@@ -30,7 +31,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     },
     inputs: &[
         exactly(Type::Vector3, "in", 0.0, "The vector."),
-        number("amount", 0.0, "The angle, counter-clockwise.")
+        number("amount", 0.0, "The angle, clockwise.")
             .range(Range::soft(-180.0, 180.0))
             .unit("degrees"),
         PortSpec::new(
@@ -67,7 +68,17 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let vector = lower.bundle(node, "in");
     let angle = lower.signal(node, "amount");
     let axis = numbers(lower, node, "axis");
-    let [cosine, sine] = turn(lower, &angle);
+    turned(lower, &vector, &angle, &axis)
+}
+
+/// A vector turned clockwise around an axis, by an angle in degrees.
+pub(crate) fn turned<'b>(
+    lower: &mut Lower<'_, 'b>,
+    vector: &[Signal<'b>],
+    angle: &Signal<'b>,
+    axis: &[Float<'b>],
+) -> Bundle<'b> {
+    let [cosine, sine] = turn(lower, &-angle);
     let square = lower.b().sum(axis.iter().map(|x| x.square()));
     let directed = square.gt(0.0);
     let length = directed.select(square, 1.0).sqrt();

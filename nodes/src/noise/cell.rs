@@ -12,7 +12,9 @@ pub(crate) mod passed;
 pub(crate) mod place;
 pub(crate) mod space;
 
+use super::components::Hash;
 use super::field::Spread;
+use super::jenkins;
 use super::period::wrapped;
 use super::things::{
     Filtered, Sums, VARIANCE, attach, channels, declared_ensemble, ensemble, named, weighted,
@@ -53,6 +55,59 @@ pub(crate) fn uniform(hash: Uint<'_>) -> Float<'_> {
     (hash >> 8).to_float() * (1.0 / (1u32 << 24) as f32)
 }
 
+/// Which numbers the cells of a plane, or of a layer of space, have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Lattice {
+    /// Selects them.
+    pub(crate) seed: i32,
+    /// After how many cells they repeat; 0 for never.
+    pub(crate) period: i32,
+    /// Which hash decides.
+    pub(crate) hash: Hash,
+}
+
+impl Lattice {
+    /// The number of a cell of the plane, given the scrambled seed.
+    fn in_plane<'b>(self, [column, row]: [Int<'b>; 2], seed: Uint<'b>) -> Float<'b> {
+        match self.hash {
+            Hash::Mipless => number([column, row], seed, self.period),
+            Hash::Materialx => {
+                let place = [column, row].map(|cell| wrapped(cell, self.period).to_uint());
+                jenkins::unit(jenkins::plane(place, seed))
+            }
+        }
+    }
+
+    /// The number of a cell of space, given what the cells of its layer share.
+    fn in_layer<'b>(self, [column, row]: [Int<'b>; 2], layer: Uint<'b>) -> Float<'b> {
+        match self.hash {
+            Hash::Mipless => number([column, row], layer, self.period),
+            Hash::Materialx => {
+                let [x, y] = [column, row].map(|cell| wrapped(cell, self.period).to_uint());
+                let seed = layer.literal(jenkins::seed(self.seed));
+                jenkins::unit(jenkins::space([x, y, layer], seed))
+            }
+        }
+    }
+
+    /// The number of a cell of either, given what the others share with it.
+    fn number<'b>(self, cell: [Int<'b>; 2], shared: Uint<'b>, space: bool) -> Float<'b> {
+        if space {
+            self.in_layer(cell, shared)
+        } else {
+            self.in_plane(cell, shared)
+        }
+    }
+
+    /// What all cells share.
+    fn scrambled(self, b: &Builder, salt: u32) -> Uint<'_> {
+        match self.hash {
+            Hash::Mipless => lattice_seed(b, self.seed, salt),
+            Hash::Materialx => b.uint(jenkins::seed(self.seed)),
+        }
+    }
+}
+
 /// The number of a cell, in [0, 1).
 pub(crate) fn number<'b>([column, row]: [Int<'b>; 2], seed: Uint<'b>, period: i32) -> Float<'b> {
     uniform(hash(column, row_word(row, seed, period), period))
@@ -90,15 +145,14 @@ pub(crate) fn coincidence(variance: Float<'_>) -> Float<'_> {
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
-    seed: i32,
-    period: i32,
+    lattice: Lattice,
 ) -> Vec<Signal<'b>> {
     let mode = lower.mode();
     let spread = Spread::of(position);
     report(lower, spread.eigenvalues[0].sqrt());
     let (image, parameters) = lower.image();
-    let key = format!("cells {mode:?} {seed} {period} {}", image.key());
-    let function = lower.function(&key, |module| build(module, mode, seed, period, &image));
+    let key = format!("cells {mode:?} {lattice:?} {}", image.key());
+    let function = lower.function(&key, |module| build(module, mode, lattice, &image));
     let widest = spread.covariance[0].max(spread.covariance[2]);
     let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0]).lt(1.0));
     let others = (parameters, ensemble);
@@ -152,7 +206,7 @@ passed! {
 }
 
 /// The cells of one row, the body of a fold over columns.
-fn column(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
+fn column(module: &mut Module, lattice: Lattice, space: bool, image: &Image) -> FunctionRef {
     let b = &Builder::new("cell_column", "One cell of a row.");
     let index = b.uint_param("index");
     let sums = LineSums::declare(b, image.channels());
@@ -161,11 +215,8 @@ fn column(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
     let cells = RowCells::declare(b);
     let parameters = image.declare(b);
     let place = row.start + index.to_float();
-    let number = number(
-        [cells.cell_x + place.to_int(), cells.row],
-        cells.seed,
-        period,
-    );
+    let cell = [cells.cell_x + place.to_int(), cells.row];
+    let number = lattice.number(cell, cells.seed, space);
     let edge = [place + 1.0 - row.mean, row.inverse_sd];
     let values = image.of(number, &parameters).into_iter();
     let d: Vec<Float<'_>> = values
@@ -241,8 +292,8 @@ passed! {
 }
 
 /// One row of cells, the body of a fold.
-fn row(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
-    let column = column(module, period, image);
+fn row(module: &mut Module, lattice: Lattice, space: bool, image: &Image) -> FunctionRef {
+    let column = column(module, lattice, space, image);
     let b = &Builder::new("cell_row", "One row of cells.");
     let index = b.uint_param("index");
     let count = image.channels();
@@ -352,14 +403,14 @@ impl<'b> Plane<'b> {
     }
 }
 
-fn build(module: &mut Module, mode: Mode, seed: i32, period: i32, image: &Image) -> FunctionRef {
-    let row = mode.filters().then(|| row(module, period, image));
+fn build(module: &mut Module, mode: Mode, lattice: Lattice, image: &Image) -> FunctionRef {
+    let row = (mode.filters()).then(|| row(module, lattice, false, image));
     let b = &Builder::new("cells", "Filtered random cells.");
     let (origin, at) = place::declared::<2>(b);
     let parameters = image.declare(b);
-    let seed = lattice_seed(b, seed, 0xbb67_ae85);
+    let seed = lattice.scrambled(b, 0xbb67_ae85);
     let inner = [0, 1].map(|axis| origin[axis] + at[axis].floor().to_int());
-    let centre = image.of(number(inner, seed, period), &parameters);
+    let centre = image.of(lattice.in_plane(inner, seed), &parameters);
     let Some(row) = row else {
         b.results(named(&[("mean", centre.len())]), centre);
         return b.finish(module);

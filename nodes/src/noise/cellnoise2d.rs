@@ -1,6 +1,8 @@
 //! `cellnoise2d`: a random number in every cell.
 
 use crate::noise::cell;
+use crate::noise::cell::Lattice;
+use crate::noise::components::{HASH, Hash};
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
@@ -31,7 +33,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             Texture Mapping and Image Warping*, §3.5.8 (Gaussian footprints); Johnson & Kotz, \
             *Continuous Univariate Distributions*, ch. 13 (truncated normals).",
     },
-    inputs: &[TEXCOORD, FREQUENCY, SEED, PERIOD],
+    inputs: &[TEXCOORD, FREQUENCY, SEED, PERIOD, HASH],
     output: OutputType::Exactly(Type::Float),
     reach: |_| Reach::of(0.0, 1.0),
     class: |_| Behaviour::Random { deviation: 0.058 },
@@ -52,9 +54,12 @@ pub(crate) const PERIOD: PortSpec = port::integer(
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = position(lower, node);
-    let seed = lower.integer(node, "seed");
-    let period = lower.integer(node, "period");
-    cell::filtered(lower, &position, seed, period)
+    let lattice = Lattice {
+        seed: lower.integer(node, "seed"),
+        period: lower.integer(node, "period"),
+        hash: Hash::of(lower, node),
+    };
+    cell::filtered(lower, &position, lattice)
 }
 
 /// Every cell has a number.

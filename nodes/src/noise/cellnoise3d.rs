@@ -1,7 +1,9 @@
 //! `cellnoise3d`: a random number in every cell of space.
 
+use crate::noise::cell::Lattice;
 use crate::noise::cell::space;
 use crate::noise::cellnoise2d::PERIOD;
+use crate::noise::components::{HASH, Hash};
 use crate::noise::source::{FREQUENCY, POSITION, SEED, place};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, PortSpec, Reach, Type};
@@ -40,6 +42,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             doc: "After how many cells the noise repeats in all three directions; 0 for never.",
             ..PERIOD
         },
+        HASH,
     ],
     output: OutputType::Exactly(Type::Float),
     reach: |_| Reach::of(0.0, 1.0),
@@ -56,9 +59,12 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let position = place(lower, node);
-    let seed = lower.integer(node, "seed");
-    let period = lower.integer(node, "period");
-    space::filtered(lower, &position, seed, period)
+    let lattice = Lattice {
+        seed: lower.integer(node, "seed"),
+        period: lower.integer(node, "period"),
+        hash: Hash::of(lower, node),
+    };
+    space::filtered(lower, &position, lattice)
 }
 
 /// Every cell has a number.

@@ -1,12 +1,13 @@
 //! `fractal3d`: a sum of octaves of lattice noise in space.
 
+use crate::noise::components::{AMPLITUDES, FRACTAL, HASH, SIGNATURE};
 use crate::noise::noise3d::{deviation, summed};
 use crate::noise::octaves::{DIMINISH, LACUNARITY, OCTAVES, repeating, tiled_octaves};
 use crate::noise::source::{
-    AMPLITUDE, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, diminished, practical,
+    FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, diminished, practical,
 };
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "fractal3d",
@@ -27,9 +28,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             Bruneton & Neyret 2012 §2.2.",
     },
     inputs: &[
-        POSITION, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY, DIMINISH,
+        POSITION, FREQUENCY, AMPLITUDES, PIVOT, SEED, PERIOD, KERNEL, OCTAVES, LACUNARITY,
+        DIMINISH, HASH, SIGNATURE,
     ],
-    output: OutputType::Exactly(Type::Float),
+    output: OutputType::Named("signature"),
     reach: |inputs| practical(inputs, diminished(inputs)),
     class: |inputs| repeating(inputs, deviation(inputs)),
     example: r#"{ "version": 1, "name": "granite",
@@ -38,5 +40,5 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 };
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    summed(lower, node, tiled_octaves(lower, node))
+    summed(lower, node, tiled_octaves(lower, node), FRACTAL)
 }

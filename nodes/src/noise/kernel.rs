@@ -51,13 +51,16 @@ impl Kernel {
         let [x, y] = position else {
             panic!("a position has two coordinates")
         };
-        let literals = [
+        let mut literals = vec![
             count,
             part.to_bits(),
             lacunarity.to_bits(),
             diminish.to_bits(),
             period,
         ];
+        if let Self::Quintic(Kind::Materialx(byte)) = self {
+            literals.push(u32::from(byte));
+        }
         let of = NodeRule {
             name: match self {
                 Self::Gaussian => "lattice_noise",

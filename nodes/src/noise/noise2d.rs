@@ -1,20 +1,23 @@
 //! `noise2d`: lattice noise, filtered exactly for any footprint.
 
+use crate::noise::components::{AMPLITUDES, Apart, Component, HASH, Hash, NOISE, SIGNATURE};
 use crate::noise::kernel::Kernel;
+use crate::noise::perlin::Kind;
 use crate::noise::source::{
-    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, practical,
+    EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, SEED, TEXCOORD, octaves_of, position, practical,
     tiling,
 };
 use crate::noise::sum::Octaves;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType};
 
 /// max |CDF − Φ| of the quadrupole kernel and of Perlin's, over 4·10⁶ independent points.
 const DEVIATIONS: [f32; 2] = [0.0046, 0.0127];
 
 /// The deviation from a Gaussian of the noises with a `kernel`.
 pub(crate) fn deviation(inputs: &dyn InputView) -> f32 {
-    DEVIATIONS[usize::from(inputs.choice("kernel") == "quintic")]
+    DEVIATIONS
+        [usize::from(inputs.choice("kernel") == "quintic" || inputs.choice("hash") == "materialx")]
 }
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -34,7 +37,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             E = exp(−d·d/2a²) and k = dᵀB(θ)d/a⁴ with B a reflection of a random angle θ; the \
             dominant wavelength is 1.53 cells. With `quintic`, Perlin’s gradient noise: \
             Σ w(d_x) w(d_y) g·d over the four corners of a cell, w(t) = 1 − 10|t|³ + 15t⁴ − 6|t|⁵ \
-            and g a random direction; the dominant wavelength is 1.70 cells.",
+            and g a random direction; the dominant wavelength is 1.70 cells. With the hash `materialx`, \
+            pivot + amplitude · 0.6616 Σ w(d_x) w(d_y) g·d with g one of (±1, ±2) and (±2, ±1) by \
+            Jenkins’s hash of the lattice point, which is MaterialX’s `noise2d` to rounding at a seed \
+            of 0; its standard deviation is 0.319 amplitude.",
         statistics: "Gaussian with mean `pivot` and standard deviation amplitude/4; max |CDF − Φ| is \
             0.0046 (`quintic`: 0.0127). The range is ±5 standard deviations in practice (`quintic`: \
             ±3.4 at most). Over a footprint of covariance Σ (in cells), the mean, gradient and Hessian are \
@@ -66,8 +72,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             fade); MaterialX 1.39 specification, node `noise2d`; Bruneton & Neyret 2012 §2.2; Hermite–Parseval \
             identity for the remainder.",
     },
-    inputs: &[TEXCOORD, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL],
-    output: OutputType::Exactly(Type::Float),
+    inputs: &[
+        TEXCOORD, FREQUENCY, AMPLITUDES, PIVOT, SEED, PERIOD, KERNEL, HASH, SIGNATURE,
+    ],
+    output: OutputType::Named("signature"),
     reach: |inputs| practical(inputs, 1.0),
     class: |inputs| tiling(inputs, 1.0, 1.0, deviation(inputs)),
     example: r#"{ "version": 1, "name": "clouds",
@@ -84,6 +92,7 @@ pub(crate) fn one_octave(seed: i32, period: i32) -> Octaves {
         diminish: 1.0,
         seed,
         period: period.max(0) as u32,
+        hash: Hash::Mipless,
     }
 }
 
@@ -92,13 +101,45 @@ pub(crate) fn tiled_octave(lower: &Lower<'_, '_>, node: &Node) -> Octaves {
     one_octave(lower.integer(node, "seed"), lower.integer(node, "period"))
 }
 
-/// A sum of octaves with the node's kernel.
-pub(crate) fn summed<'b>(lower: &mut Lower<'_, 'b>, node: &Node, octaves: Octaves) -> Bundle<'b> {
-    let kernel = Kernel::of(lower, node);
+/// Sums of octaves with the node's hash and kernel, one for each component.
+pub(crate) fn summed<'b>(
+    lower: &mut Lower<'_, 'b>,
+    node: &Node,
+    octaves: Octaves,
+    apart: Apart,
+) -> Bundle<'b> {
+    let hash = Hash::of(lower, node);
+    let position = position(lower, node);
     let extent = EXTENT * octaves.sd();
-    octaves_of(lower, node, (kernel, octaves), (0.25, extent))
+    (Component::all(hash, node.ty.components(), apart).into_iter())
+        .map(|component| {
+            let octaves = Octaves {
+                seed: component.seed(octaves.seed),
+                hash,
+                ..octaves
+            };
+            let (kernel, factor) = match hash {
+                Hash::Mipless => (Kernel::of(lower, node), 0.25),
+                Hash::Materialx => {
+                    let kind = Kind::Materialx(component.byte);
+                    (Kernel::Quintic(kind), MATERIALX * kind.deviation())
+                }
+            };
+            let place = component.place(&position);
+            octaves_of(
+                lower,
+                node,
+                (kernel, octaves),
+                (factor, extent),
+                (&place, component.index),
+            )
+        })
+        .collect()
 }
 
+/// What MaterialX multiplies the sum of its kernels by.
+pub(crate) const MATERIALX: f32 = 0.6616;
+
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    summed(lower, node, tiled_octave(lower, node))
+    summed(lower, node, tiled_octave(lower, node), NOISE)
 }

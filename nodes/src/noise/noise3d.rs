@@ -1,21 +1,22 @@
 //! `noise3d`: lattice noise in space, filtered exactly for any footprint.
 
+use crate::noise::components::{AMPLITUDES, Apart, Component, HASH, Hash, NOISE, SIGNATURE};
 use crate::noise::noise2d::tiled_octave;
 use crate::noise::source::{
-    AMPLITUDE, EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, practical, scaled,
-    tiling,
+    EXTENT, FREQUENCY, KERNEL, PERIOD, PIVOT, POSITION, SEED, place, practical, scaled, tiling,
 };
 use crate::noise::sum::Octaves;
 use crate::noise::volume::{self, Kind};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType, Type};
+use mipless_graph::{Category, Doc, InputView, Node, NodeSpec, OutputType};
 
 /// max |CDF − Φ| of the quadrupole kernel and of Perlin's, over 4·10⁶ independent points.
 const DEVIATIONS: [f32; 2] = [0.002, 0.016];
 
 /// The deviation from a Gaussian of the noises in space.
 pub(crate) fn deviation(inputs: &dyn InputView) -> f32 {
-    DEVIATIONS[usize::from(inputs.choice("kernel") == "quintic")]
+    DEVIATIONS
+        [usize::from(inputs.choice("kernel") == "quintic" || inputs.choice("hash") == "materialx")]
 }
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -29,7 +30,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             E = exp(−d·d/2a²) and k = ±((n·d)² − d·d/3)/a² with n a random direction. The dominant \
             wavelength on a plane is 1.72 cells. With `quintic`, Perlin’s gradient noise: \
             Σ w(d_x) w(d_y) w(d_z) g·d over the eight corners of a cell, w(t) = 1 − 10|t|³ + 15t⁴ \
-            − 6|t|⁵ and g a random direction; the dominant wavelength is 1.93 cells.",
+            − 6|t|⁵ and g a random direction; the dominant wavelength is 1.93 cells. With the hash \
+            `materialx`, pivot + amplitude · 0.982 Σ w(d_x) w(d_y) w(d_z) g·d with g the middle of an \
+            edge of a cube by Jenkins’s hash, which is MaterialX’s `noise3d` to rounding at a seed of \
+            0; its standard deviation is 0.265 amplitude.",
         statistics: "Gaussian with mean `pivot` and standard deviation amplitude/4; max |CDF − Φ| is \
             0.002 (`quintic`: 0.016). The range is ±5 standard deviations in practice (`quintic`: \
             ±4.54 at most). The spectrum is one \
@@ -55,8 +59,10 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             MaterialX 1.39 specification, node `noise3d`; Bruneton & Neyret 2012 §2.2; \
             Hermite–Parseval identity for the remainder; Stein 1981 for the window.",
     },
-    inputs: &[POSITION, FREQUENCY, AMPLITUDE, PIVOT, SEED, PERIOD, KERNEL],
-    output: OutputType::Exactly(Type::Float),
+    inputs: &[
+        POSITION, FREQUENCY, AMPLITUDES, PIVOT, SEED, PERIOD, KERNEL, HASH, SIGNATURE,
+    ],
+    output: OutputType::Named("signature"),
     reach: |inputs| practical(inputs, 1.0),
     class: |inputs| tiling(inputs, 1.0, 1.0, deviation(inputs)),
     example: r#"{ "version": 1, "name": "stone",
@@ -64,14 +70,39 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         "outputs": { "out": { "node": "noise3d" } } }"#,
 };
 
-/// A sum of octaves in space with the node's kernel.
-pub(crate) fn summed<'b>(lower: &mut Lower<'_, 'b>, node: &Node, octaves: Octaves) -> Bundle<'b> {
+/// Sums of octaves in space with the node's hash and kernel, one for each component.
+pub(crate) fn summed<'b>(
+    lower: &mut Lower<'_, 'b>,
+    node: &Node,
+    octaves: Octaves,
+    apart: Apart,
+) -> Bundle<'b> {
+    let hash = Hash::of(lower, node);
     let position = place(lower, node);
-    let kind = Kind::of(lower, node);
-    let unit = volume::filtered(lower, &position, kind, octaves);
-    scaled(lower, node, unit, (0.25, EXTENT * octaves.sd()))
+    let extent = EXTENT * octaves.sd();
+    (Component::all(hash, node.ty.components(), apart).into_iter())
+        .map(|component| {
+            let octaves = Octaves {
+                seed: component.seed(octaves.seed),
+                hash,
+                ..octaves
+            };
+            let (kind, factor) = match hash {
+                Hash::Mipless => (Kind::of(lower, node), 0.25),
+                Hash::Materialx => {
+                    let kind = Kind::Materialx(component.byte);
+                    (kind, MATERIALX / kind.unit())
+                }
+            };
+            let unit = volume::filtered(lower, &component.place(&position), kind, octaves);
+            scaled(lower, node, unit, (factor, extent), component.index)
+        })
+        .collect()
 }
 
+/// What MaterialX multiplies the sum of its kernels by.
+pub(crate) const MATERIALX: f32 = 0.982;
+
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    summed(lower, node, tiled_octave(lower, node))
+    summed(lower, node, tiled_octave(lower, node), NOISE)
 }

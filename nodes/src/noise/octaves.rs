@@ -1,5 +1,6 @@
 //! The ports of noises that are made of octaves.
 
+use super::components::Hash;
 use super::source::tiling;
 use super::sum::Octaves;
 use crate::port;
@@ -58,5 +59,6 @@ pub(crate) fn octaves(lower: &Lower<'_, '_>, node: &Node) -> Octaves {
         diminish: lower.float(node, "diminish"),
         seed: lower.integer(node, "seed"),
         period: 0,
+        hash: Hash::Mipless,
     }
 }

@@ -21,6 +21,7 @@ mod window;
 
 use super::field::{Field, Spread};
 use super::hash::{COMPASS_ENERGY, COMPASS_LENGTH, compass, signed};
+use super::jenkins;
 use super::remainder::{remainder, share};
 use super::sum::Octave;
 use super::sum::{Octaves, footprint_scale, parts};
@@ -58,6 +59,8 @@ pub(crate) enum Kind {
     Gradient,
     /// A number: value noise.
     Value,
+    /// One of eight directions by a byte of MaterialX's hash.
+    Materialx(u8),
 }
 
 impl Kind {
@@ -65,7 +68,7 @@ impl Kind {
     /// w(t) (0) or t w(t) (1).
     const fn terms(self) -> &'static [[usize; 2]] {
         match self {
-            Self::Gradient => &[[1, 0], [0, 1]],
+            Self::Gradient | Self::Materialx(_) => &[[1, 0], [0, 1]],
             Self::Value => &[[0, 0]],
         }
     }
@@ -75,12 +78,14 @@ impl Kind {
         match self {
             Self::Gradient => compass(hash).to_vec(),
             Self::Value => vec![signed(hash)],
+            Self::Materialx(byte) => jenkins::gradient(hash >> (8 * u32::from(byte))).to_vec(),
         }
     }
 
     /// 1 over the standard deviation of the bare sum of kernels.
     pub(crate) fn unit(self) -> f32 {
         match self {
+            Self::Materialx(_) => 1.0 / self.deviation(),
             Self::Gradient => {
                 let energy = 2.0 * COMPASS_ENERGY * WINDOW_ENERGY * WINDOW_MOMENT;
                 1.0 / (COMPASS_LENGTH * energy.sqrt())
@@ -89,10 +94,19 @@ impl Kind {
         }
     }
 
+    /// The standard deviation of the bare sum of kernels.
+    pub(crate) fn deviation(self) -> f32 {
+        match self {
+            // E[gₓ²] = E[g_y²] = (1 + 4)/2, and the two are uncorrelated.
+            Self::Materialx(_) => (2.0 * 2.5 * WINDOW_ENERGY * WINDOW_MOMENT).sqrt(),
+            _ => 1.0 / self.unit(),
+        }
+    }
+
     /// The wavelength of the dominant detail, in cells: where k times the energy spectrum peaks.
     pub(super) const fn wavelength(self) -> f32 {
         match self {
-            Self::Gradient => 1.70,
+            Self::Gradient | Self::Materialx(_) => 1.70,
             Self::Value => 3.144,
         }
     }
@@ -110,6 +124,7 @@ impl Kind {
     /// The name of its rule.
     pub(crate) const fn rule(self) -> &'static str {
         match self {
+            Self::Materialx(_) => "materialx_noise",
             Self::Gradient => "perlin_noise",
             Self::Value => "value_noise",
         }
@@ -117,7 +132,7 @@ impl Kind {
 
     const fn fit(self) -> Fit {
         match self {
-            Self::Gradient => fit::GRADIENT,
+            Self::Gradient | Self::Materialx(_) => fit::GRADIENT,
             Self::Value => fit::VALUE,
         }
     }
@@ -125,13 +140,14 @@ impl Kind {
     /// What a kernel of the fit is multiplied by: the unit of its offset, in cells.
     const fn length(self) -> f32 {
         match self {
-            Self::Gradient => fit::GRADIENT.width,
+            Self::Gradient | Self::Materialx(_) => fit::GRADIENT.width,
             Self::Value => 1.0,
         }
     }
 
     const fn name(self) -> &'static str {
         match self {
+            Self::Materialx(_) => "materialx",
             Self::Gradient => "perlin",
             Self::Value => "value",
         }
@@ -156,7 +172,7 @@ pub(crate) fn filtered<'b>(
     } = octaves;
     let tiles = octaves.tiles();
     let name = kind.name();
-    let key = format!("{name} {mode:?} {lacunarity} {diminish} {tiles}");
+    let key = format!("{name} {kind:?} {mode:?} {lacunarity} {diminish} {tiles}");
     let octave = lower.function(&key, |module| match mode {
         Mode::Point => point::octave(module, kind, octaves),
         _ => filtered_octave(module, kind, mode, octaves),
@@ -195,7 +211,7 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     let by_near = 1.0 - by_window;
 
     // Polynomials of the window.
-    let grid = Grid::of(&state);
+    let grid = Grid::of(&state, kind);
     let zeros = vec![b.float(0.0); parts];
     let captures = (grid, state.fractions, footprint.covariance);
     let turns = by_near.gt(0.0).select(1u32, 0u32);

@@ -3,7 +3,8 @@
 use crate::color::hsv::to_rgb;
 use crate::noise::cell::line::{Line, filtered};
 use crate::noise::cell::{lattice_seed, number};
-use crate::noise::randomfloat::{IN, place};
+use crate::noise::components::{HASH, Hash};
+use crate::noise::randomfloat::{IN, materialx, place};
 use crate::noise::source::SEED;
 use crate::noise::things::VARIANCE;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand};
@@ -45,6 +46,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         bound("brightnesslow", 1.0, "The least brightness."),
         bound("brightnesshigh", 1.0, "The largest brightness."),
         SEED,
+        HASH,
     ],
     output: OutputType::Exactly(Type::Color3),
     reach: |_| Reach::ANY,
@@ -72,20 +74,28 @@ const BOUNDS: [&str; 6] = [
     "brightnesshigh",
 ];
 
+/// What MaterialX adds to the seed for hue, saturation and brightness: 413.3, 1522.4 and 1813.8,
+/// rounded up.
+const SEEDS: [i32; 3] = [414, 1523, 1814];
+
 /// How many hues stand for all.
 const HUES: u32 = 32;
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let place = place(lower, node);
+    let place = place(lower, node, false);
     let seed = lower.integer(node, "seed");
+    let hash = Hash::of(lower, node);
     let bounds = BOUNDS.map(|port| lower.number(node, port));
     let line = Line {
-        key: format!("randomcolor {seed}"),
+        key: format!("randomcolor {seed} {hash:?}"),
         parameters: bounds.to_vec(),
         numbers: &|cell, bounds| {
-            let seed = lattice_seed(cell.builder(), seed, 0x1f83_d9ab);
+            let lattice = lattice_seed(cell.builder(), seed, 0x1f83_d9ab);
             let hsv = [0, 1, 2].map(|i| {
-                let share = number([cell, cell.literal(i as i32)], seed, 0);
+                let share = match hash {
+                    Hash::Mipless => number([cell, cell.literal(i as i32)], lattice, 0),
+                    Hash::Materialx => materialx(cell, seed.wrapping_add(SEEDS[i])),
+                };
                 between(share, [bounds[2 * i], bounds[2 * i + 1]])
             });
             to_rgb(hsv).to_vec()

@@ -3,9 +3,12 @@
 use crate::componentwise::{exposed, product, sum};
 use crate::noise::cell::line::{Line, filtered};
 use crate::noise::cell::{lattice_seed, number};
+use crate::noise::components::{HASH, Hash};
+use crate::noise::jenkins;
 use crate::noise::source::SEED;
 use crate::noise::things::VARIANCE;
 use crate::port;
+use mipless_codegen::ir::{Float, Int};
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Ensemble, Lower};
 use mipless_graph::{
@@ -45,6 +48,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::number("min", 0.0, "The least number.").range(Range::soft(0.0, 1.0)),
         port::number("max", 1.0, "The largest number.").range(Range::soft(0.0, 1.0)),
         SEED,
+        HASH,
+        SIGNATURE,
     ],
     output: OutputType::Exactly(Type::Float),
     reach: |inputs| {
@@ -66,19 +71,46 @@ pub(crate) const IN: PortSpec =
     port::number("in", 0.0, "The number, of which steps of 1/4096 count.")
         .range(Range::soft(0.0, 1.0));
 
-/// `in` in cells, of which multiples of 1/4096 are the middles.
-pub(crate) fn place<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Signal<'b> {
+/// `in` in cells, those of whole numbers or those of steps, of which multiples of 1/4096 are the middles; with MaterialX's hash they begin there.
+pub(crate) fn place<'b>(lower: &mut Lower<'_, 'b>, node: &Node, whole: bool) -> Signal<'b> {
     let number = exposed(lower, node, "in").swap_remove(0);
-    (number * 4096.0).offset(0.5)
+    match (whole, Hash::of(lower, node)) {
+        // Whole numbers lie in the middles.
+        (true, _) => number.offset(0.5),
+        (_, Hash::Mipless) => (number * 4096.0).offset(0.5),
+        (_, Hash::Materialx) => number * 4096.0,
+    }
+}
+
+/// Whether steps of `in` are those of MaterialX's floats or those of its integers.
+const SIGNATURE: PortSpec = port::choice(
+    "signature",
+    &["float", "integer"],
+    "float",
+    "What counts: steps of 1/4096 of a number, or whole numbers.",
+);
+
+/// MaterialX's number of a step: that of a cell of the plane, whose row is the seed.
+pub(crate) fn materialx<'b>(cell: Int<'b>, seed: i32) -> Float<'b> {
+    let b = cell.builder();
+    jenkins::unit(jenkins::plane(
+        [cell.to_uint(), b.uint(seed as u32)],
+        b.uint(0),
+    ))
 }
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let place = place(lower, node);
+    let whole = lower.choice(node, "signature") == "integer";
+    let place = place(lower, node, whole);
     let seed = lower.integer(node, "seed");
+    let hash = Hash::of(lower, node);
     let line = Line {
-        key: format!("randomfloat {seed}"),
+        key: format!("randomfloat {seed} {hash:?}"),
         parameters: Vec::new(),
         numbers: &|cell, _| {
+            if hash == Hash::Materialx {
+                return vec![materialx(cell, seed)];
+            }
             let seed = lattice_seed(cell.builder(), seed, 0x9b05_688c);
             vec![number([cell, cell.literal(0)], seed, 0)]
         },

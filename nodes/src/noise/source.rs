@@ -122,24 +122,25 @@ pub(crate) fn diminished(inputs: &dyn InputView) -> f32 {
     (0..octaves.ceil() as i32).map(|k| diminish.powi(k)).sum()
 }
 
-/// A sum of octaves of a lattice as the node's output: pivot + amplitude · `factor` · X, with |X| at
-/// most `extent`.
+/// A sum of octaves of a lattice at a position as a component of the node's output: pivot + amplitude ·
+/// `factor` · X, with |X| at most `extent`.
 pub(crate) fn octaves_of<'b>(
     lower: &mut Lower<'_, 'b>,
     node: &Node,
     (kernel, octaves): (Kernel, Octaves),
     (factor, extent): (f32, f32),
-) -> Vec<Signal<'b>> {
-    let position = position(lower, node);
-    kernel.report(lower, &position, octaves);
+    (position, component): (&[Signal<'b>], usize),
+) -> Signal<'b> {
+    kernel.report(lower, position, octaves);
     if lower.only_measures() {
-        return vec![Signal::constant(lower.b(), 0.0)];
+        return Signal::constant(lower.b(), 0.0);
     }
-    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+    let amplitude = amplitude_of(lower, node, component);
+    let pivot = lower.signal(node, "pivot");
     if !(amplitude.is_certain() && pivot.is_certain()) {
         let shape = Affine::unit(lower.b());
-        let unit = kernel.signal(lower, &position, octaves, shape);
-        return scaled(lower, node, unit, (factor, extent));
+        let unit = kernel.signal(lower, position, octaves, shape);
+        return scaled(lower, node, unit, (factor, extent), component);
     }
     let amplitude = amplitude * factor;
     let extent = match amplitude.mean.as_constant() {
@@ -151,8 +152,14 @@ pub(crate) fn octaves_of<'b>(
         amplitude: amplitude.mean,
         pivot: pivot.mean,
     };
-    let signal = kernel.signal(lower, &position, octaves, shape);
-    vec![signal.with_range(range)]
+    let signal = kernel.signal(lower, position, octaves, shape);
+    signal.with_range(range)
+}
+
+/// The amplitude of a component: its own where there are several.
+fn amplitude_of<'b>(lower: &Lower<'_, 'b>, node: &Node, component: usize) -> Signal<'b> {
+    let amplitudes = lower.bundle(node, "amplitude");
+    amplitudes[component.min(amplitudes.len() - 1)].clone()
 }
 
 /// The field of variance 1, and the covariance of the slopes that the filter removed, as the node's
@@ -165,18 +172,20 @@ pub(crate) fn shaped<'b>(
     rest: impl FnOnce(&mut Lower<'_, 'b>) -> Sym2<'b>,
 ) -> Vec<Signal<'b>> {
     let unit = field.steep(lower, position, rest);
-    scaled(lower, node, unit, (0.25, EXTENT))
+    vec![scaled(lower, node, unit, (0.25, EXTENT), 0)]
 }
 
-/// A noise X of variance 1 as the node's output: pivot + amplitude · `factor` · X, with |X| at most
-/// `extent`.
+/// A noise X of variance 1 as a component of the node's output: pivot + amplitude · `factor` · X, with
+/// |X| at most `extent`.
 pub(crate) fn scaled<'b>(
     lower: &mut Lower<'_, 'b>,
     node: &Node,
     unit: Signal<'b>,
     (factor, extent): (f32, f32),
-) -> Vec<Signal<'b>> {
-    let [amplitude, pivot] = ["amplitude", "pivot"].map(|port| lower.signal(node, port));
+    component: usize,
+) -> Signal<'b> {
+    let amplitude = amplitude_of(lower, node, component);
+    let pivot = lower.signal(node, "pivot");
     let unit = unit.with_range([-extent, extent]);
-    vec![lower.algebra.product(&unit, &(amplitude * factor)) + pivot]
+    lower.algebra.product(&unit, &(amplitude * factor)) + pivot
 }

@@ -4,7 +4,9 @@ mod octave;
 
 pub(super) use octave::Octave;
 
+use super::components::Hash;
 use super::field::Field;
+use super::jenkins;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Scalars, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
@@ -24,6 +26,8 @@ pub(crate) struct Octaves {
     pub(crate) seed: i32,
     /// After how many cells of the first octave the lattice repeats; 0 if it does not.
     pub(crate) period: u32,
+    /// Which hash decides: with MaterialX's all octaves share one lattice.
+    pub(crate) hash: Hash,
 }
 
 /// The octaves that a footprint leaves.
@@ -63,7 +67,10 @@ impl Octaves {
 
     /// The scrambled seed, which the state of the first octave holds.
     pub(super) fn scrambled_seed(self, b: &Builder) -> Uint<'_> {
-        b.uint(self.seed as u32).scramble()
+        match self.hash {
+            Hash::Mipless => b.uint(self.seed as u32).scramble(),
+            Hash::Materialx => b.uint(jenkins::seed(self.seed)),
+        }
     }
 
     /// The root mean square frequency of the sum, over that of its first octave.

@@ -3,7 +3,9 @@
 use crate::noise::kernel::Kernel;
 use crate::noise::noise2d::tiled_octave;
 use crate::noise::perlin::Kind;
-use crate::noise::source::{FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, practical, tiling};
+use crate::noise::source::{
+    FREQUENCY, PERIOD, SEED, TEXCOORD, octaves_of, position, practical, tiling,
+};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Type};
@@ -63,5 +65,13 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let octave = tiled_octave(lower, node);
     let kernel = Kernel::Quintic(Kind::Value);
-    octaves_of(lower, node, (kernel, octave), (SD, 0.5 / SD))
+    let position = position(lower, node);
+    let place = (&position[..], 0);
+    vec![octaves_of(
+        lower,
+        node,
+        (kernel, octave),
+        (SD, 0.5 / SD),
+        place,
+    )]
 }

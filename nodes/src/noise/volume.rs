@@ -37,6 +37,8 @@ pub(crate) enum Kind {
     Quadrupole,
     /// A gradient under the quintic window.
     Quintic,
+    /// The same with one of twelve directions by a byte of MaterialX's hash.
+    Materialx(u8),
 }
 
 impl Kind {
@@ -53,15 +55,17 @@ impl Kind {
     fn width(self) -> f32 {
         match self {
             Self::Quadrupole => WIDTH,
-            Self::Quintic => SPACE.width,
+            Self::Quintic | Self::Materialx(_) => SPACE.width,
         }
     }
 
     /// What the sum over unfiltered kernels is multiplied by.
-    fn unit(self) -> f32 {
+    pub(crate) fn unit(self) -> f32 {
         match self {
             Self::Quadrupole => quadrupole::unit(),
             Self::Quintic => quintic::unit(),
+            // Its directions have the squared length 2.
+            Self::Materialx(_) => quintic::unit() * std::f32::consts::FRAC_1_SQRT_2,
         }
     }
 
@@ -71,7 +75,7 @@ impl Kind {
     fn wavelength(self) -> f32 {
         match self {
             Self::Quadrupole => std::f32::consts::TAU * WIDTH / 1.405,
-            Self::Quintic => 1.93,
+            Self::Quintic | Self::Materialx(_) => 1.93,
         }
     }
 
@@ -79,7 +83,7 @@ impl Kind {
     fn energy<'b>(self, spread: &Spread<'b>, inverse: &Inverse<'b>) -> [Float<'b>; 3] {
         match self {
             Self::Quadrupole => energy::quadrupole(spread, inverse),
-            Self::Quintic => energy::quintic(spread, SPACE.width),
+            Self::Quintic | Self::Materialx(_) => energy::quintic(spread, SPACE.width),
         }
     }
 }

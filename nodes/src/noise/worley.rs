@@ -10,13 +10,16 @@
 
 mod lines;
 mod shape;
+pub(crate) mod space;
 mod taps;
 
 pub(crate) use shape::{Output, Worley};
 
 use super::cell::lattice_seed;
 use super::cell::place::{called, declared, declared_spread, field, window_start};
+use super::components::Hash;
 use super::field::Spread;
+use super::jenkins;
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
@@ -29,11 +32,13 @@ const CELLS: f32 = 4.0;
 /// fade.
 const WIDEST: [f32; 2] = [1.2, 1.5];
 
-/// The filtered noise at a position in cells, for each component of the image that is asked for.
+/// The filtered noise at a position in cells, which lies in a range, for each component of the image
+/// that is asked for.
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
     worley: Worley,
+    range: [f32; 2],
 ) -> Vec<Signal<'b>> {
     let mode = lower.mode();
     let spread = Spread::of(position);
@@ -45,7 +50,7 @@ pub(crate) fn filtered<'b>(
     let function = lower.function(&key, |module| build(module, mode, worley));
     let results = called(lower, &function, (position, &spread), ());
     let field = field(&results[..results.len().min(3)], results.get(3).copied());
-    vec![field.at(lower, position).with_range(worley.range())]
+    vec![field.at(lower, position).with_range(range)]
 }
 
 /// What is nearest to places around (x, y), `reach` = how far they are spread along each axis; nothing
@@ -59,7 +64,12 @@ fn search<'b>(
     any: Bool<'b>,
 ) -> Vec<Nearest<'b>> {
     let b = x.builder();
-    let counts = reach.map(|reach| CELLS - (reach * -2.0).floor());
+    // MaterialX looks into the nearest nine cells alone.
+    let cells = match worley.hash {
+        Hash::Mipless => CELLS,
+        Hash::Materialx => 3.0,
+    };
+    let counts = reach.map(|reach| cells - (reach * -2.0).floor());
     let [columns, rows] = counts.map(|count| count.to_int().to_uint());
     let shared = Rows {
         start_y: window_start(y, counts[1]),
@@ -67,7 +77,10 @@ fn search<'b>(
         columns,
         cell_x,
         cell_y,
-        seed: lattice_seed(b, worley.seed, 0xa54f_f53a),
+        seed: match worley.hash {
+            Hash::Mipless => lattice_seed(b, worley.seed, 0xa54f_f53a),
+            Hash::Materialx => b.uint(jenkins::seed(worley.seed)),
+        },
     };
     let before = vec![Nearest::none(b, kept); places.len()];
     b.fold(row, any.select(rows, 0u32), before, (shared, places))

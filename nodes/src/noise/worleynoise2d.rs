@@ -1,12 +1,13 @@
 //! `worleynoise2d`: distances to random points.
 
 use crate::noise::cellnoise2d::PERIOD;
+use crate::noise::components::{HASH, Hash};
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
 use crate::noise::worley::{self, Output, Worley};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Literal, Node, NodeSpec, OutputType, Range, Reach, Type,
+    Behaviour, Category, Doc, InputView, Literal, Node, NodeSpec, OutputType, PortSpec, Range, Reach,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -17,9 +18,11 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "One point lies in every cell of frequency · texcoord, at its centre moved by \
             jitter · (r − ½), r uniform. With `style` `distance`, `output` is the distance to the \
-            nearest point (`F1`), to the second nearest (`F2`), or their difference (`F2-F1`), in \
-            cells; with `solid` it is the random number of [0, 1) of that point, or the second's \
-            less the first's. Points within 1.5 cells are found.",
+            nearest point (`F1`), to the second nearest (`F2`), their difference (`F2-F1`), or to the \
+            third (`F3`), in cells; with `solid` it is the random number of [0, 1) of that point, or the second's \
+            less the first's. Points within 1.5 cells are found. With the hash \
+            `materialx` MaterialX’s `worleynoise2d` to rounding, at a seed of 0, which searches the \
+            nearest nine cells.",
         statistics: "Not Gaussian: max |CDF − Φ| is about 0.04 (F1, F2), 0.1 (F2 − F1) or 0.058 \
             (solid). The range is 0 to √2 (F1), to 1.81 (F2), or [0, 1) (solid; differences ±1). The \
             spectrum is broad up to about a cycle a cell and falls from there, as k⁻⁵ by the creases \
@@ -40,44 +43,68 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             E₂^{r²} 5-1.",
     },
     inputs: &[
-        TEXCOORD,
-        FREQUENCY,
-        port::number(
-            "jitter",
-            1.0,
-            "How far points leave the centres of their cells.",
-        )
-        .uniform()
-        .range(Range::hard(0.0, 1.0)),
-        port::choice(
-            "style",
-            &["distance", "solid"],
-            "distance",
-            "Distances, or a random number for each region.",
-        ),
-        port::choice(
-            "output",
-            &["F1", "F2", "F2-F1"],
-            "F1",
-            "Of the nearest point, the second, or the difference.",
-        ),
-        SEED,
-        PERIOD,
+        TEXCOORD, FREQUENCY, JITTER, STYLE, OUTPUT, SEED, PERIOD, HASH, SIGNATURE,
     ],
-    output: OutputType::Exactly(Type::Float),
-    reach: |inputs| match (inputs.choice("style"), inputs.choice("output")) {
-        ("solid", "F2-F1") => Reach::of(-1.0, 1.0),
-        ("solid", _) => Reach::of(0.0, 1.0),
-        _ => Reach::of(0.0, 2.0),
-    },
+    output: OutputType::Named("signature"),
+    reach,
     class,
     example: r#"{ "version": 1, "name": "pebbles",
         "nodes": { "worleynoise2d": { "type": "worleynoise2d", "inputs": { "frequency": 6, "output": "F2-F1" } } },
         "outputs": { "out": { "node": "worleynoise2d" } } }"#,
 };
 
-fn class(inputs: &dyn InputView) -> Behaviour {
+/// How irregular.
+pub(crate) const JITTER: PortSpec = port::number(
+    "jitter",
+    1.0,
+    "How far points leave the centres of their cells.",
+)
+.uniform()
+.range(Range::hard(0.0, 1.0));
+
+/// What of a point.
+pub(crate) const STYLE: PortSpec = port::choice(
+    "style",
+    &["distance", "solid"],
+    "distance",
+    "Distances, or a random number for each region.",
+);
+
+/// Of which point.
+pub(crate) const OUTPUT: PortSpec = port::choice(
+    "output",
+    &["F1", "F2", "F2-F1", "F3"],
+    "F1",
+    "Of the nearest point, the second, the difference of the two, or (of distances) the third.",
+);
+
+/// How many points.
+pub(crate) const SIGNATURE: PortSpec = port::choice(
+    "signature",
+    &["float", "vector2", "vector3"],
+    "float",
+    "The type of the result: a float is the output that is asked for, a vector the distances of the \
+     nearest points in order, or random numbers of the nearest one.",
+);
+
+/// What the values lie between.
+pub(crate) fn reach(inputs: &dyn InputView) -> Reach {
+    match (inputs.choice("style"), inputs.choice("output")) {
+        ("solid", "F2-F1") => Reach::of(-1.0, 1.0),
+        ("solid", _) => Reach::of(0.0, 1.0),
+        _ => Reach::of(0.0, 2.5),
+    }
+}
+
+/// Not Gaussian; the third region is not told apart.
+pub(crate) fn class(inputs: &dyn InputView) -> Behaviour {
     let deviation = match (inputs.choice("style"), inputs.choice("output")) {
+        ("solid", "F3") => {
+            return Behaviour::Refused {
+                port: "output",
+                reason: "of solid regions there are those of the nearest and the second point",
+            };
+        }
         ("solid", _) => 0.058,
         (_, "F2-F1") => 0.1,
         _ => 0.04,
@@ -85,27 +112,65 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     Behaviour::Random { deviation }
 }
 
-pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
-    let position = position(lower, node);
+/// The noises of a node's components, and what all lie between.
+pub(crate) fn components(
+    lower: &Lower<'_, '_>,
+    node: &Node,
+    space: bool,
+) -> (Vec<Worley>, [f32; 2]) {
+    let solid = lower.choice(node, "style") == "solid";
+    let output = match lower.choice(node, "output") {
+        "F2" => Output::Second,
+        "F2-F1" => Output::Difference,
+        "F3" => Output::Third,
+        _ => Output::First,
+    };
     let worley = Worley {
         jitter: lower.float(node, "jitter"),
-        solid: lower.choice(node, "style") == "solid",
-        output: match lower.choice(node, "output") {
-            "F2" => Output::Second,
-            "F2-F1" => Output::Difference,
-            _ => Output::First,
-        },
+        solid,
+        output,
         period: lower.integer(node, "period"),
         seed: lower.integer(node, "seed"),
+        hash: Hash::of(lower, node),
+        channel: None,
+        space,
     };
-    worley::filtered(lower, &position, worley)
+    let range = match (solid, output) {
+        (true, Output::Difference) => [-1.0, 1.0],
+        (true, _) => [0.0, 1.0],
+        // No point of the window is farther than its corner.
+        (false, _) => [0.0, 3.6],
+    };
+    let count = node.ty.components();
+    let component = |i: usize| match (count, solid) {
+        (1, _) => worley,
+        (_, true) => Worley {
+            output: Output::First,
+            channel: Some(i as u8),
+            ..worley
+        },
+        (_, false) => Worley {
+            output: [Output::First, Output::Second, Output::Third][i],
+            ..worley
+        },
+    };
+    ((0..count).map(component).collect(), range)
 }
 
-/// The regions of the nearest points have numbers.
+pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let position = position(lower, node);
+    let (components, range) = components(lower, node, false);
+    (components.into_iter())
+        .flat_map(|worley| worley::filtered(lower, &position, worley, range))
+        .collect()
+}
+
+/// The regions of the nearest points have numbers: of several components, several that no function of
+/// one number gives.
 pub(super) fn things(node: &Node) -> bool {
     let chosen = |port: &str| match node.literal(port) {
         Literal::Text(text) => text.as_str(),
         _ => "",
     };
-    chosen("style") == "solid" && chosen("output") == "F1"
+    chosen("style") == "solid" && chosen("output") == "F1" && node.ty.components() == 1
 }

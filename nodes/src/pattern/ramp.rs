@@ -59,12 +59,12 @@ ramps! {
         aliases: &["linear_gradient", "gradient_linear", "gradient_texture"],
         remark: "",
     }
-    /// From top to bottom.
+    /// From bottom to top.
     ramptb {
         along: (1, "v"),
-        ends: ("valuet", "top", "valueb", "bottom"),
+        ends: ("valueb", "bottom", "valuet", "top"),
         aliases: &["vertical_gradient"],
-        remark: " As in MaterialX, the top is where v is 0.",
+        remark: " The top is where v is 1.",
     }
 }
 

@@ -15,8 +15,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     summary: "Goes between the values of four corners.",
     doc: Doc {
         computes: "out = the bilinear mixture of the four values with s = u and t = v limited to [0, 1], \
-            (u, v) = texcoord: valuetl at (0, 0), valuetr at (1, 0), valuebl at (0, 1), valuebr at \
-            (1, 1). As in MaterialX, the top is where v is 0.",
+            (u, v) = texcoord: valuebl at (0, 0), valuebr at (1, 0), valuetl at (0, 1), valuetr at \
+            (1, 1): the top is where v is 1.",
         statistics: "s and t are clamps of Gaussians in closed form and their product carries the covariance \
             of their linear responses: exact where the footprint lies inside the unit square or \
             along the axes, approximate for rotated footprints across an edge of it.",
@@ -53,16 +53,16 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [s, t] = [0, 1].map(|i| transfer(lower, &texcoord[i], &clamp));
     lower.algebra.shares = shares;
     let both = product(lower, &s, &t);
-    let corners = ["valuetl", "valuetr", "valuebl", "valuebr"].map(|port| lower.bundle(node, port));
-    // tl + s (tr − tl) + t (bl − tl) + st (br − tr − bl + tl).
+    let corners = ["valuebl", "valuebr", "valuetl", "valuetr"].map(|port| lower.bundle(node, port));
+    // bl + s (br − bl) + t (tl − bl) + st (tr − br − tl + bl).
     (0..corners[0].len())
         .map(|i| {
-            let [tl, tr, bl, br] = [0, 1, 2, 3].map(|k| &corners[k][i]);
-            let along = between(lower, tl, tr, &s);
-            let down = bl - tl;
-            let twist = (br - tr) - &down;
-            let down = product(lower, &down, &t);
-            along + down + product(lower, &twist, &both)
+            let [bl, br, tl, tr] = [0, 1, 2, 3].map(|k| &corners[k][i]);
+            let along = between(lower, bl, br, &s);
+            let up = tl - bl;
+            let twist = (tr - br) - &up;
+            let up = product(lower, &up, &t);
+            along + up + product(lower, &twist, &both)
         })
         .collect()
 }

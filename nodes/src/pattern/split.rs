@@ -59,11 +59,11 @@ splits! {
         halves: ("valuel", "left", "valuer", "right"),
         remark: ", with (u, v) = texcoord.",
     }
-    /// Top and bottom.
+    /// Bottom and top.
     splittb {
         along: (1, "v"),
-        halves: ("valuet", "top", "valueb", "bottom"),
-        remark: ", with (u, v) = texcoord. As in MaterialX, the top is where v is 0.",
+        halves: ("valueb", "bottom", "valuet", "top"),
+        remark: ", with (u, v) = texcoord. The top is where v is 1.",
     }
 }
 

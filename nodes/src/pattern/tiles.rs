@@ -14,6 +14,7 @@ use mipless_graph::{
 macro_rules! figures {
     ($($(#[$doc:meta])* $node:ident {
         tile: $tile:expr,
+        staggered: $lattice:ident, $rows:literal,
         aliases: $aliases:expr,
         summary: $summary:literal,
         inside: $inside:literal,
@@ -33,8 +34,7 @@ macro_rules! figures {
                     computes: concat!(
                         "With (u, v) = texcoord · uvtiling − uvoffset: out = 1 inside ", $inside,
                         " in the middle of every unit cell, else 0. Where the tiling is staggered, the \
-                        figures stand at the origin and in rows that are 0.866 cells apart and shifted by \
-                        half a cell, so that each has six neighbours.",
+                        figures stand ", $rows,
                     ),
                     statistics: concat!(
                         "Footprints whose minor axis is below 0.16 cells and whose major axis is below 1.3 \
@@ -68,7 +68,7 @@ macro_rules! figures {
                 class: |inputs| pattern_unless(inputs, &["uvtiling", "uvoffset"]),
                 example: concat!("{\n  \"version\": 1,\n  \"name\": \"", stringify!($node), "_example\",\n  \"nodes\": {\n    \"", stringify!($node), "\": { \"type\": \"", stringify!($node), "\", \"inputs\": { \"uvtiling\": [7, 7], \"size\": 0.8, \"staggered\": true } }\n  },\n  \"outputs\": { \"out\": { \"node\": \"", stringify!($node), "\" } }\n}"),
             };
-            NodeDef::new(&SPEC, |lower, node| tiles(lower, node, $tile))
+            NodeDef::new(&SPEC, |lower, node| tiles(lower, node, Lattice::$lattice, $tile))
         }
     )*};
 }
@@ -77,6 +77,8 @@ figures! {
     /// Discs.
     tiledcircles {
         tile: |radius, _| Tile::Disc(radius),
+        staggered: Triangular, "at the origin and in rows that are 0.866 cells apart and shifted by half a \
+            cell, so that each has six neighbours.",
         aliases: &["dots", "polka_dots", "tiled_circles"],
         summary: "A disc in every cell.",
         inside: "a disc of diameter size",
@@ -90,6 +92,8 @@ figures! {
     /// Hexagons with a corner up.
     tiledhexagons {
         tile: hexagon,
+        staggered: Triangular, "at the origin and in rows that are 0.866 cells apart and shifted by half a \
+            cell, so that each has six neighbours.",
         aliases: &["beehive", "honeycomb", "hexagons", "tiled_hexagons"],
         summary: "A hexagon in every cell.",
         inside: "a regular hexagon of width size, with a corner up,",
@@ -102,6 +106,7 @@ figures! {
     /// Cloverleafs.
     tiledcloverleafs {
         tile: cloverleaf,
+        staggered: Quincunx, "at the corners and in the middles of the cells.",
         aliases: &["cloverleafs", "quatrefoils", "tiled_cloverleafs"],
         summary: "A cloverleaf in every cell.",
         inside: "a `cloverleaf` of width size, with 24 edges a half of its outline,",
@@ -113,15 +118,17 @@ figures! {
     }
 }
 
-/// The tiling of a node, as a colour; `tile` is what stands in a cell, of a radius and perhaps staggered.
+/// The tiling of a node, as a colour; `tile` is what stands in a cell, of a radius and perhaps staggered,
+/// then at the sites of the lattice `otherwise`.
 fn tiles<'b>(
     lower: &mut Lower<'_, 'b>,
     node: &Node,
+    otherwise: Lattice,
     tile: impl FnOnce(f64, bool) -> Tile,
 ) -> Bundle<'b> {
     let staggered = lower.flag(node, "staggered");
     let lattice = if staggered {
-        Lattice::Triangular
+        otherwise
     } else {
         Lattice::Square
     };
@@ -148,7 +155,31 @@ fn hexagon(radius: f64, staggered: bool) -> Tile {
 /// Edges of a quarter of a circle: a leaf is seldom large on the screen.
 const EDGES: usize = 6;
 
-fn cloverleaf(radius: f64, _: bool) -> Tile {
+fn cloverleaf(radius: f64, staggered: bool) -> Tile {
     let corners = quadrant(EDGES).into_iter();
-    Tile::Polygon(corners.map(|[x, y]| [radius * y, radius * x]).collect())
+    let quarter: Vec<[f64; 2]> = corners.map(|[x, y]| [radius * y, radius * x]).collect();
+    Tile::Polygon(if staggered {
+        within_diamond(&quarter)
+    } else {
+        quarter
+    })
+}
+
+/// What of a figure is nearer to its site than to those of a quincunx around it, |x| + |y| ≤ ½. Leaves
+/// larger than 0.83 reach into their neighbours', which are their mirror images: what is cut off lies in
+/// these.
+fn within_diamond(quarter: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let beyond = |[y, x]: [f64; 2]| x + y - 0.5;
+    let mut cut = Vec::with_capacity(quarter.len() + 2);
+    for pair in quarter.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        cut.push([from[0], from[1].min(0.5 - from[0])]);
+        let [before, after] = [from, to].map(beyond);
+        if before * after < 0.0 {
+            let share = before / (before - after);
+            cut.push([0, 1].map(|i| from[i] + share * (to[i] - from[i])));
+        }
+    }
+    cut.extend(quarter.last().map(|&[y, x]| [y, x.min(0.5 - y)]));
+    cut
 }

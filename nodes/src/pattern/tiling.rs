@@ -142,7 +142,8 @@ fn tiling_function(module: &mut Module, tiling: &Tiling<'_>, known: Option<f32>)
     let step = 1.0 / lattice.row() as f32;
     let below = ((from - extent) * step).floor();
     let last = ((from + extent) * step).floor();
-    let rows = (last - below).clamp(0.0, 16.0);
+    let most = if lattice.row() < 0.6 { 32.0 } else { 16.0 };
+    let rows = (last - below).clamp(0.0, most);
     let rows = single.select(rows, 0.0).to_int().to_uint();
     let whitening = Whitening::of(widened);
     let line = [below + 1.0, xy / raised, sd];

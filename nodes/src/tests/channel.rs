@@ -45,16 +45,16 @@ fn outputs_are_components() {
 }
 
 #[test]
-fn turns_in_space_are_counter_clockwise() {
+fn turns_in_space_are_clockwise() {
     let of = |inputs: Value| {
         let graph = json!({ "version": 1, "name": "turn", "nodes": { "x": { "type": "rotate3d", "inputs": inputs } },
             "outputs": { "out": { "node": "x" } } });
         let values = evaluated(&graph.to_string(), Method::Local, &[Footprint::default()]);
         [values[0][0], values[1][0], values[2][0]]
     };
-    let turned = of(json!({ "in": [1, 0, 0], "amount": 90, "axis": [0, 0, 3] }));
+    let turned = of(json!({ "in": [1, 0, 0], "amount": -90, "axis": [0, 0, 3] }));
     assert_eq!(turned, [0.0, 1.0, 0.0]);
-    let diagonal = of(json!({ "in": [1, 2, 3], "amount": 120, "axis": [1, 1, 1] }));
+    let diagonal = of(json!({ "in": [1, 2, 3], "amount": -120, "axis": [1, 1, 1] }));
     for (value, wanted) in diagonal.into_iter().zip([3.0, 1.0, 2.0]) {
         near("a third of a turn around the diagonal", value, wanted, 1e-5);
     }

@@ -104,7 +104,7 @@ fn hue_saturation_value() {
 
 #[test]
 fn corrections() {
-    let grey = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    let grey = |[r, g, b]: [f64; 3]| 0.272_228_7 * r + 0.674_081_8 * g + 0.053_689_5 * b;
     let saturated =
         move |rgb: [f64; 3], amount: f64| rgb.map(|x| grey(rgb) + amount * (x - grey(rgb)));
     let node = ("saturate", json!({ "amount": 0.4 }));

@@ -203,7 +203,7 @@ fn linear_nodes_are_exact() {
     }
     .check();
     let point = json!({ "p": { "type": "combine2", "inputs": { "in1": { "node": "x0" }, "in2": { "node": "x1" } } } });
-    let inputs = json!({ "in": { "node": "p" }, "amount": 30 });
+    let inputs = json!({ "in": { "node": "p" }, "amount": -30 });
     Law {
         node: json!({ "type": "rotate2d", "inputs": inputs, "extra_nodes": point }),
         exact: &|x: &[f64]| {

@@ -226,9 +226,7 @@ fn waves_and_steps() {
     type Wave = fn(f64) -> f64;
     let unary: [(&str, Value, Wave); 9] = [
         ("fract", json!({}), |x| x - x.floor()),
-        ("trianglewave", json!({}), |x| {
-            2.0 * (x - (x + 0.5).floor()).abs()
-        }),
+        ("trianglewave", json!({}), |x| (x - (x + 0.5).floor()).abs()),
         ("squarewave", json!({ "width": 0.3 }), |x| {
             f64::from(u8::from(x - x.floor() < 0.3))
         }),

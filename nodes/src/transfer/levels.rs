@@ -2,11 +2,11 @@
 
 use crate::componentwise::{composed, exposed, numbers, transfer};
 use crate::port::any;
-use crate::transfer::range::{DOCLAMP, interpolated, passed, vanishing};
+use crate::transfer::range::{DOCLAMP, GAMMA, interpolated, passed, vanishing};
 use mipless_codegen::ir::Float;
 use mipless_codegen::moments::{Curve, Piecewise, RealPower, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "levels",
@@ -31,8 +31,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("in", 0.0, "The signal."),
         any("inlow", 0.0, "What maps to outlow."),
         any("inhigh", 1.0, "What maps to outhigh."),
-        any("gamma", 1.0, "The inverse of the exponent.")
-            .range(Range::hard(0.01, 100.0).with_soft(0.2, 5.0)),
+        GAMMA,
         any("outlow", 0.0, "The result at inlow."),
         any("outhigh", 1.0, "The result at inhigh."),
         DOCLAMP,
@@ -101,7 +100,8 @@ pub(crate) fn curved<'b>(
     transfer(lower, share, &curve)
 }
 
-fn signed_power<'b>(t: Float<'b>, power: Float<'b>, limited: bool) -> Float<'b> {
+/// sign(t) |t|^power, of t limited to [0, 1] or not.
+pub(super) fn signed_power<'b>(t: Float<'b>, power: Float<'b>, limited: bool) -> Float<'b> {
     if limited {
         return RealPower { power }.value(t.clamp(0.0, 1.0).abs());
     }

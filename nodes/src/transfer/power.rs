@@ -10,7 +10,7 @@ use mipless_graph::{
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "power",
-    aliases: &["pow", "gamma", "safepower", "exponent", "math_power"],
+    aliases: &["pow", "gamma", "exponent", "math_power"],
     category: Category::Transfer,
     summary: "A signal to a power.",
     doc: Doc {
@@ -30,7 +30,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         references: cite!(isserlis, bussgang; "power"),
     },
     inputs: &[
-        any("in1", 1.0, "The base."),
+        any("in1", 0.0, "The base."),
         any("in2", 1.0, "The exponent.").range(Range::soft(0.0, 8.0)),
     ],
     output: OutputType::Widest,

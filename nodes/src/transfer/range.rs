@@ -1,24 +1,26 @@
 //! Affine map from a range to a range.
 
-use crate::componentwise::{difference, product, transfer};
+use crate::componentwise::{difference, numbers, product, transfer};
 use crate::port;
 use crate::port::any;
+use crate::transfer::levels;
 use mipless_codegen::moments::{Piecewise, Reciprocal, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Reach,
+    Behaviour, Category, Doc, InputView, Interval, Node, NodeSpec, OutputType, PortSpec, Range,
+    Reach,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "range",
-    aliases: &["remap", "map_range", "maprange", "fit", "histogram_range"],
+    aliases: &["map_range", "maprange", "fit", "histogram_range"],
     category: Category::Transfer,
     summary: "Maps one range of numbers to another.",
     doc: Doc {
-        computes: "out = outlow + t (outhigh − outlow) with t = (in − inlow)/(inhigh − inlow), limited \
-            to [0, 1] if `doclamp` is set, for each component. A range narrower than 1e-6 counts \
-            as 1e-6 wide.",
-        statistics: "Without `doclamp`, linear and exact; varying outlow or outhigh multiply t as \
+        computes: "out = outlow + sign(t) |t|^(1/gamma) (outhigh − outlow) with t = (in − inlow)/(inhigh \
+            − inlow), limited to [0, 1] if `doclamp` is set, for each component. A range narrower \
+            than 1e-6 counts as 1e-6 wide.",
+        statistics: "With a gamma that is not the number 1, as `levels`. Else, without `doclamp`, linear and exact; varying outlow or outhigh multiply t as \
             `multiply` does. With it, the transfer min(max(t, 0), 1) in closed form, exact for a \
             Gaussian input. A varying inlow moves the signal, exactly; of inhigh − inlow the mean \
             is used, and the class says so.",
@@ -31,12 +33,16 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         any("in", 0.0, "The signal."),
         any("inlow", 0.0, "What maps to outlow."),
         any("inhigh", 1.0, "What maps to outhigh."),
+        GAMMA,
         any("outlow", 0.0, "The result at inlow."),
         any("outhigh", 1.0, "The result at inhigh."),
         DOCLAMP,
     ],
     output: OutputType::Widest,
     reach: |inputs| {
+        if !straight(inputs) && !inputs.flag("doclamp") {
+            return Reach::ANY;
+        }
         let [low, high] = ["outlow", "outhigh"].map(|port| inputs.reach(port));
         if inputs.flag("doclamp") {
             return low.hull(high);
@@ -60,7 +66,7 @@ fn class(inputs: &dyn InputView) -> Behaviour {
         return vanishing;
     }
     let varies = |ports: &[&str]| ports.iter().any(|port| inputs.varies(port));
-    if inputs.flag("doclamp") || varies(&["inlow", "inhigh"]) {
+    if inputs.flag("doclamp") || varies(&["inlow", "inhigh"]) || !straight(inputs) {
         Behaviour::Function
     } else if inputs.varies("in") && varies(&["outlow", "outhigh"]) {
         Behaviour::Product
@@ -84,6 +90,15 @@ pub(super) fn vanishing(inputs: &dyn InputView) -> Option<Behaviour> {
     })
 }
 
+/// Whether there is no power.
+fn straight(inputs: &dyn InputView) -> bool {
+    !inputs.varies("gamma") && inputs.reach("gamma").whole(4) == Interval::point(1.0)
+}
+
+/// The inverse of the exponent.
+pub(super) const GAMMA: PortSpec = any("gamma", 1.0, "The inverse of the exponent.")
+    .range(Range::hard(0.01, 100.0).with_soft(0.2, 5.0));
+
 /// Whether the result stays within the range of the output.
 pub(super) const DOCLAMP: PortSpec = port::flag(
     "doclamp",
@@ -93,6 +108,10 @@ pub(super) const DOCLAMP: PortSpec = port::flag(
 .uniform();
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let gamma = numbers(lower, node, "gamma");
+    if gamma.iter().any(|gamma| gamma.as_constant() != Some(1.0)) {
+        return levels::lower(lower, node);
+    }
     let limited = lower.flag(node, "doclamp");
     let ports = ["in", "inlow", "inhigh", "outlow", "outhigh"];
     let [input, low, high, outlow, outhigh] = ports.map(|port| lower.bundle(node, port));

@@ -17,9 +17,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     doc: Doc {
         computes: "out = sin(in) / cos(in), for each component; a cosine nearer to 0 than 1e-6 is moved \
             to ±1e-6.",
-        statistics: "A varying input reaches the poles, where no moment exists: the class is unknown, and \
-            the signal is sampled. Where the check allows that, filtered methods give the \
-            quotient of the two filtered waves, which is only bounded.",
+        statistics: "A varying input reaches the poles, where no moment exists: filtered methods give \
+            the quotient of the two filtered waves, which is only bounded, and `auto` samples \
+            where that is far off.",
         accuracy: "Exact at a point to 1e-5 away from the poles; filtered, not stated. Held by \
             `nodes/src/tests.rs`, which compares every node with its point value as the footprint \
             goes to 0.",
@@ -39,10 +39,11 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 /// Of a number, a number.
 fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.varies("in") {
-        Behaviour::Unknown(
-            "the tangent of an angle that varies passes its poles, where neither mean nor variance \
-             exist; between two poles a `colorramp` of the angle can take its place",
-        )
+        Behaviour::NoMoments {
+            port: "in",
+            reason: "the tangent of an angle that varies passes its poles, where neither mean nor \
+                     variance exist; between two poles a `colorramp` of the angle can take its place",
+        }
     } else {
         Behaviour::Function
     }

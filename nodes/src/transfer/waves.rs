@@ -11,6 +11,8 @@ macro_rules! waves {
         aliases: $aliases:expr,
         summary: $summary:literal,
         computes: $computes:literal,
+        far: $far:literal,
+        high: $high:literal,
         wave: $wave:expr,
     })*) => {$(
         pub(crate) const fn $node() -> NodeDef {
@@ -21,11 +23,11 @@ macro_rules! waves {
                 summary: $summary,
                 doc: Doc {
                     computes: $computes,
-                    statistics: "For σ ≤ 0.2 periods the piecewise function of the corners within \
+                    statistics: concat!("For σ ≤ 0.2 periods the piecewise function of the corners within \
                         reach in closed form, beyond it three harmonics of the Fourier series, damped \
                         by e^{−2π²k²v}; the distortion as a sum of squares over the pieces, or from \
                         the series of the square. Exact for a Gaussian. Over a large footprint the \
-                        mean goes to ½ and the variance to 1/12.",
+                        mean goes to ", $far, "."),
                     accuracy: "For a Gaussian input the mean is within 4e-6, the remainder’s standard \
                         deviation within 1e-3. Held by `codegen/src/moments/tests/waves.rs` against \
                         dense numerical integration in f64.",
@@ -33,7 +35,7 @@ macro_rules! waves {
                 },
                 inputs: &[any("in", 0.0, "The signal.").range(Range::soft(-1.0, 1.0))],
                 output: OutputType::Widest,
-                reach: |_| Reach::of(0.0, 1.0),
+                reach: |_| Reach::of(0.0, $high),
                 class: |_| Behaviour::Function,
                 example: example! { stringify!($node), concat!(r#"
     "uv": {"type": "texcoord"},
@@ -55,13 +57,17 @@ waves! {
         aliases: &["sawtooth", "sawtooth_wave", "fraction", "frac"],
         summary: "A signal less the whole number below it: a sawtooth of period 1.",
         computes: "out = in − ⌊in⌋, for each component: from 0 up to 1, then 0 again.",
+        far: "½ and the variance to 1/12",
+        high: 1.0,
         wave: LinearWave::sawtooth(),
     }
     trianglewave {
         aliases: &["triangle", "triangle_wave", "pingpong"],
-        summary: "Rises from 0 to 1 and falls back once in every unit.",
-        computes: "out = 2|in − ⌊in + ½⌋|, for each component: 0 at whole numbers, 1 halfway between \
+        summary: "Rises from 0 to ½ and falls back once in every unit.",
+        computes: "out = |in − ⌊in + ½⌋|, for each component: 0 at whole numbers, ½ halfway between \
             them.",
-        wave: LinearWave::triangle(),
+        far: "¼ and the variance to 1/48",
+        high: 0.5,
+        wave: LinearWave::through(&[(0.0, 0.0), (0.5, 0.5)]),
     }
 }

@@ -14,7 +14,8 @@ fn columns(node: &str, inputs: &str, out: &str) -> String {
             "u":{{"type":"extract","inputs":{{"in":{{"node":"uv"}}}}}},
             "step":{{"type":"divide","inputs":{{"in1":{{"node":"u"}},"in2":4096}}}},
             "n":{{"type":"{node}","inputs":{{"in":{{"node":"step"}}{inputs}}}}},
-            "light":{{"type":"luminance","inputs":{{"in":{{"node":"n"}}}}}}}},
+            "grey":{{"type":"luminance","inputs":{{"in":{{"node":"n"}},"lumacoeffs":[0.2126,0.7152,0.0722]}}}},
+            "light":{{"type":"extract","inputs":{{"in":{{"node":"grey"}}}}}}}},
             "outputs":{{"out":{{"node":"{out}"}}}}}}"#
     )
 }

@@ -6,9 +6,10 @@
 use super::passed::{Passed, passed};
 use super::place::declared;
 use super::{
-    Cells, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside, lattice_seed,
-    number, report, row, window,
+    Cells, Lattice, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside, report,
+    row, window,
 };
+use crate::noise::components::Hash;
 use crate::noise::period::wrapped;
 use crate::noise::things::{
     Filtered, Sums, attach, channels, declared_ensemble, ensemble, named, weighted,
@@ -29,19 +30,22 @@ const INSIDE: f32 = 1.0 / 1024.0;
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
-    seed: i32,
-    period: i32,
+    lattice: Lattice,
 ) -> Vec<Signal<'b>> {
     let (mode, b) = (lower.mode(), lower.b());
     // A surface at 0, as every flat view is, must not lie on faces of cells: half of a footprint would be
-    // in another layer at every size.
-    let position: Vec<Signal<'b>> = (position.iter()).map(|axis| axis.offset(INSIDE)).collect();
+    // in another layer at every size. MaterialX's cells lie where they lie.
+    let inside = match lattice.hash {
+        Hash::Mipless => INSIDE,
+        Hash::Materialx => 0.0,
+    };
+    let position: Vec<Signal<'b>> = (position.iter()).map(|axis| axis.offset(inside)).collect();
     let position = &position[..];
     let spread = Spread::of(position, 1.0);
     report(lower, spread.size());
     let (image, parameters) = lower.image();
-    let key = format!("cells in space {mode:?} {seed} {period} {}", image.key());
-    let function = lower.function(&key, |module| build(module, mode, seed, period, &image));
+    let key = format!("cells in space {mode:?} {lattice:?} {}", image.key());
+    let function = lower.function(&key, |module| build(module, mode, lattice, &image));
     let places: Vec<(Int<'b>, Float<'b>)> = position.iter().map(Signal::place).collect();
     let captures = mode.filters().then_some(spread);
     let [xx, _, _, yy, _, zz] = *spread.covariance;
@@ -66,9 +70,13 @@ pub(crate) fn filtered<'b>(
     signals
 }
 
-/// The seed of a layer.
-fn layer_seed<'b>(layer: Int<'b>, seed: Uint<'b>, period: i32) -> Uint<'b> {
-    (wrapped(layer, period).to_uint() * 0x27d4_eb2f + seed).scramble()
+/// What the cells of a layer share: its seed, or its number, which MaterialX hashes with theirs.
+fn layer_seed<'b>(layer: Int<'b>, seed: Uint<'b>, lattice: Lattice) -> Uint<'b> {
+    let layer = wrapped(layer, lattice.period);
+    if lattice.hash == Hash::Materialx {
+        return layer.to_uint();
+    }
+    (layer.to_uint() * 0x27d4_eb2f + seed).scramble()
 }
 
 passed! {
@@ -122,8 +130,8 @@ impl<'b> Scalars<'b> for LayerSums<'b> {
 }
 
 /// One layer of cells, the body of a fold.
-fn layer(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
-    let row = row(module, period, image);
+fn layer(module: &mut Module, lattice: Lattice, image: &Image) -> FunctionRef {
+    let row = row(module, lattice, true, image);
     let b = &Builder::new("cell_layer", "One layer of cells.");
     let index = b.uint_param("index");
     let count = image.channels();
@@ -157,7 +165,7 @@ fn layer(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
     let cells = Cells {
         centre,
         origin: [of_layers.cell_x, of_layers.cell_y],
-        seed: layer_seed(of_layers.cell_z + place.to_int(), of_layers.seed, period),
+        seed: layer_seed(of_layers.cell_z + place.to_int(), of_layers.seed, lattice),
         fade: of_layers.fade,
         parameters,
     };
@@ -185,16 +193,16 @@ fn layer(module: &mut Module, period: i32, image: &Image) -> FunctionRef {
     b.finish(module)
 }
 
-fn build(module: &mut Module, mode: Mode, seed: i32, period: i32, image: &Image) -> FunctionRef {
-    let layer = mode.filters().then(|| layer(module, period, image));
+fn build(module: &mut Module, mode: Mode, lattice: Lattice, image: &Image) -> FunctionRef {
+    let layer = mode.filters().then(|| layer(module, lattice, image));
     let b = &Builder::new("cells_in_space", "Filtered random cells in space.");
     let (origin, [x, y, z]) = declared::<3>(b);
     let parameters = image.declare(b);
     let [cell_x, cell_y, cell_z] = origin;
-    let seed = lattice_seed(b, seed, 0x510e_527f);
+    let seed = lattice.scrambled(b, 0x510e_527f);
     let [column, row, own] =
         [(cell_x, x), (cell_y, y), (cell_z, z)].map(|(cell, at)| cell + at.floor().to_int());
-    let centre = number([column, row], layer_seed(own, seed, period), period);
+    let centre = lattice.in_layer([column, row], layer_seed(own, seed, lattice));
     let centre = image.of(centre, &parameters);
     let Some(layer) = layer else {
         b.results(named(&[("mean", centre.len())]), centre);

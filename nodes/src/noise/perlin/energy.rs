@@ -25,7 +25,7 @@ pub(super) fn energies<'b>(kind: Kind, footprint: &Footprint<'b>) -> [Float<'b>;
     let [xx, _, yy] = *footprint.covariance;
     match kind {
         Kind::Value => term(footprint, [WINDOW_WIDTH, WINDOW_WIDTH], None),
-        Kind::Gradient => {
+        Kind::Gradient | Kind::Materialx(_) => {
             let along = term(footprint, [PRODUCT_WIDTH, WINDOW_WIDTH], Some(yy));
             let across = term(footprint, [WINDOW_WIDTH, PRODUCT_WIDTH], Some(xx));
             std::array::from_fn(|i| (along[i] + across[i]) * 0.5)

@@ -1,6 +1,8 @@
 //! From the columns and rows around a position to the hashes of their lattice points.
 
+use super::Kind;
 use crate::noise::hash::{AXES, corner, word};
+use crate::noise::jenkins;
 use crate::noise::sum::Octave;
 use crate::noise::tile::wrapped;
 use mipless_codegen::ir::{Builder, Float, Int, Scalar, Scalars, Uint};
@@ -12,11 +14,13 @@ pub(super) struct Grid<'b> {
     seed: Uint<'b>,
     /// After how many cells (a real) it repeats; the position's cell then lies in the period.
     period: Option<Float<'b>>,
+    kind: Kind,
 }
 
 impl<'b> Grid<'b> {
-    pub(super) fn of(state: &Octave<'b, 2>) -> Self {
+    pub(super) fn of(state: &Octave<'b, 2>, kind: Kind) -> Self {
         Self {
+            kind,
             cells: state.cells,
             seed: state.seed,
             period: state.period,
@@ -24,8 +28,9 @@ impl<'b> Grid<'b> {
     }
 
     /// The parameters of a function that takes it over.
-    pub(super) fn declare(b: &'b Builder, tiles: bool) -> Self {
+    pub(super) fn declare(b: &'b Builder, kind: Kind, tiles: bool) -> Self {
         Self {
+            kind,
             cells: ["cell_x", "cell_y"].map(|name| b.int_param(name)),
             seed: b.uint_param("seed"),
             period: tiles.then(|| b.float_param("period")),
@@ -35,7 +40,31 @@ impl<'b> Grid<'b> {
     /// The word of the column (axis 0) or row (axis 1) at `offset`, an integer as a real, from the
     /// position's cell.
     pub(super) fn word(&self, axis: usize, offset: Float<'b>) -> Uint<'b> {
-        word(self.line(axis, offset))
+        self.mixed(self.line(axis, offset))
+    }
+
+    /// The word of a line.
+    fn mixed(&self, line: Uint<'b>) -> Uint<'b> {
+        match self.kind {
+            Kind::Materialx(_) => line,
+            _ => word(line),
+        }
+    }
+
+    /// The hash of a lattice point from the words of its column and its row.
+    pub(super) fn corner(&self, column: Uint<'b>, row: Uint<'b>) -> Uint<'b> {
+        match self.kind {
+            Kind::Materialx(_) => jenkins::plane([column, row], self.seed),
+            _ => corner(column, row),
+        }
+    }
+
+    /// What a step along an axis adds to a line.
+    fn factor(&self, axis: usize) -> u32 {
+        match self.kind {
+            Kind::Materialx(_) => 1,
+            _ => AXES[axis],
+        }
     }
 
     /// What the word is made of: lines of an axis differ by its factor from one to the next.
@@ -45,8 +74,12 @@ impl<'b> Grid<'b> {
             None => cell + offset.to_int(),
             Some(period) => wrapped(cell.to_float() + offset, period).to_int(),
         };
-        let line = place.to_uint() * AXES[axis];
-        if axis == 1 { line + self.seed } else { line }
+        let line = place.to_uint() * self.factor(axis);
+        match self.kind {
+            Kind::Materialx(_) => line,
+            _ if axis == 1 => line + self.seed,
+            _ => line,
+        }
     }
 
     /// The hashes of the four corners of the cell: (0, 0), (1, 0), (0, 1), (1, 1).
@@ -57,11 +90,11 @@ impl<'b> Grid<'b> {
             let second = if self.period.is_some() {
                 self.line(axis, b.float(1.0))
             } else {
-                first + AXES[axis]
+                first + self.factor(axis)
             };
-            [first, second].map(word)
+            [first, second].map(|line| self.mixed(line))
         });
-        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| corner(columns[i], rows[j]))
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.corner(columns[i], rows[j]))
     }
 }
 
@@ -76,6 +109,7 @@ impl<'b> Scalars<'b> for Grid<'b> {
             cells,
             seed,
             period,
+            ..self
         }
     }
 }

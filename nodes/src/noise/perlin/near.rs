@@ -16,7 +16,7 @@ pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> 
     for name in &NAMES[..parts(mode)] {
         b.float_param(format!("state_{name}"));
     }
-    let grid = Grid::declare(b, tiles);
+    let grid = Grid::declare(b, kind, tiles);
     let fractions = b.float_params(["x", "y"]);
     let [xx, xy, yy] = b.float_params(["s_xx", "s_xy", "s_yy"]);
     let powers = [xy, xy.square() * 0.5];

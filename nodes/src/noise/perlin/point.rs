@@ -23,13 +23,13 @@ pub(super) fn octave(module: &mut Module, kind: Kind, octaves: Octaves) -> Funct
     b.uint_param("index");
     let sum = b.float_param("mean");
     let state = Octave::declare(b, octaves);
-    let hashes = Grid::of(&state).corners();
+    let hashes = Grid::of(&state, kind).corners();
     let [x, y] = state.fractions.map(|t| [t, t + -1.0]);
     let offsets = [[x[0], y[0]], [x[1], y[0]], [x[0], y[1]], [x[1], y[1]]];
     let [c00, c10, c01, c11] = std::array::from_fn(|corner| {
         let weights = kind.weights(hashes[corner]);
         match (kind, &weights[..]) {
-            (Kind::Gradient, &[x, y]) => dot([x, y], offsets[corner]),
+            (Kind::Gradient | Kind::Materialx(_), &[x, y]) => dot([x, y], offsets[corner]),
             _ => weights[0],
         }
     });

@@ -4,7 +4,6 @@
 use super::fit::{Shape, Weight};
 use super::grid::Grid;
 use super::{Kind, NAMES};
-use crate::noise::hash::corner;
 use crate::noise::sum::{derivatives, parts};
 use crate::noise::window::{count, start};
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Scalars, Sym2, dot};
@@ -70,16 +69,16 @@ fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionR
     let sums = sums(b, mode);
     let [start, x, dy] = b.float_params(["start_x", "x", "dy"]);
     let row = b.uint_param("row_word");
-    let grid = Grid::declare(b, tiles);
+    let grid = Grid::declare(b, kind, tiles);
     let shape = declare(b);
     let place = start + index.to_float();
-    let hash = corner(grid.word(0, place), row);
+    let hash = grid.corner(grid.word(0, place), row);
     let d = [x - place, dy].map(|d| d * (1.0 / fit.width));
     let means = shape.inverse.map(|row| dot(row, d));
     let envelope = (dot(d, means) * -0.5).max(-80.0).exp();
     let weights = kind.weights(hash);
     let weight = match (kind, &weights[..]) {
-        (Kind::Gradient, &[x, y]) => Weight::Direction([x, y]),
+        (Kind::Gradient | Kind::Materialx(_), &[x, y]) => Weight::Direction([x, y]),
         _ => Weight::Number(weights[0]),
     };
     let parts = fit.kernel(weight, (d, means), &shape, derivatives(mode));
@@ -98,7 +97,7 @@ pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> F
     let index = b.uint_param("index");
     let sums = sums(b, mode);
     let [first, rows, columns, shear] = b.float_params(["start_y", "rows", "columns", "shear"]);
-    let grid = Grid::declare(b, tiles);
+    let grid = Grid::declare(b, kind, tiles);
     let [x, y] = b.float_params(["x", "y"]);
     let shape = declare(b);
     let place = first + index.to_float();

@@ -1,6 +1,7 @@
 //! The part of an octave's state that goes from octave to octave.
 
 use super::Octaves;
+use crate::noise::components::Hash;
 use crate::noise::hash::NEXT_OCTAVE;
 use crate::noise::tile::wrapped_cell;
 use mipless_codegen::ir::{Builder, Float, Int, Scalar, Scalars, Uint};
@@ -69,10 +70,15 @@ impl<'b, const AXES: usize> Octave<'b, AXES> {
             ..
         } = octaves;
         for axis in 0..AXES {
-            // Octaves must not share lattice points, where the variance of all is largest.
+            // Octaves must not share lattice points, where the variance of all is largest; those of
+            // MaterialX do.
+            let fraction = match octaves.hash {
+                Hash::Mipless => self.fractions[axis] + 0.381_966 / lacunarity,
+                Hash::Materialx => self.fractions[axis],
+            };
             let start = Signal {
                 cell: Some(self.cells[axis]),
-                ..Signal::certain(self.fractions[axis] + 0.381_966 / lacunarity)
+                ..Signal::certain(fraction)
             };
             let (cell, fraction) = (start * lacunarity).place();
             b.result(format!("cell_{}", NAMES[axis]), cell);
@@ -80,7 +86,11 @@ impl<'b, const AXES: usize> Octave<'b, AXES> {
         }
         b.result("scale", self.scale * lacunarity);
         b.result("amplitude", self.amplitude * diminish);
-        b.result("seed", self.seed + NEXT_OCTAVE);
+        let seed = match octaves.hash {
+            Hash::Mipless => self.seed + NEXT_OCTAVE,
+            Hash::Materialx => self.seed,
+        };
+        b.result("seed", seed);
         if let Some(period) = self.period {
             b.result("period", (period * lacunarity + 0.5).floor());
         }

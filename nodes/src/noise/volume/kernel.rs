@@ -25,16 +25,18 @@ fn kernel(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> Functio
     let index = b.uint_param("index");
     let sums = sums(b, parts);
     let [first, dy, dz] = b.float_params(["x", "dy", "dz"]);
-    let points = Points::declare(b, tiles);
+    let points = Points::declare(b, kind, tiles);
     let shape = Shape::declare(b);
     let number = index.to_float();
-    let key = points.stepped(0, number).key;
+    let point = points.stepped(0, number);
     let d = [first - number * (1.0 / kind.width()), dy, dz];
     let u = shape.inverse.times(d);
     let envelope = (dot(d, u) * -0.5).max(-80.0).exp();
     let all = match kind {
-        Kind::Quadrupole => quadrupole::kernel(key, (d, u), &shape, parts),
-        Kind::Quintic => quintic::kernel(key, (d, u), &shape, parts),
+        Kind::Quadrupole => quadrupole::kernel(point.key, (d, u), &shape, parts),
+        Kind::Quintic | Kind::Materialx(_) => {
+            quintic::kernel(quintic::gradient(point, kind), (d, u), &shape, parts)
+        }
     };
     let sums = sums
         .into_iter()
@@ -76,7 +78,7 @@ fn row(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> FunctionRe
     let leans = b.float_params(["lean_y", "lean_z"]);
     let [x, first, dz] = b.float_params(["x", "y", "dz"]);
     let [middle, left] = b.float_params(["middle", "left"]);
-    let points = Points::declare(b, tiles);
+    let points = Points::declare(b, kind, tiles);
     let shape = Shape::declare(b);
     let number = index.to_float();
     let points = points.stepped(1, number);
@@ -103,7 +105,7 @@ pub(super) fn slice(module: &mut Module, kind: Kind, parts: usize, tiles: bool) 
     let [slices, rows, columns] = b.float_params(["slices", "rows", "columns"]);
     let [shear, lean_y, lean_z] = b.float_params(["shear", "lean_y", "lean_z"]);
     let [x, y, first] = b.float_params(["x", "y", "z"]);
-    let points = Points::declare(b, tiles);
+    let points = Points::declare(b, kind, tiles);
     let shape = Shape::declare(b);
     let number = index.to_float();
     let points = points.stepped(2, number);

@@ -27,10 +27,10 @@ pub(super) fn point(module: &mut Module, kind: Kind, octaves: Octaves) -> Functi
     b.uint_param("index");
     let sum = b.float_param("mean");
     let state = Octave::declare(b, octaves);
-    let points = Points::of(&state);
+    let points = Points::of(&state, kind);
     let kernels = match near {
         Some(near) => near.sum(points, state.fractions),
-        None => quintic::point(points, state.fractions),
+        None => quintic::point(points, state.fractions, kind),
     };
     b.result("mean", sum + kernels * (state.amplitude * kind.unit()));
     state.advance(b, octaves);
@@ -80,7 +80,7 @@ pub(super) fn filtered(
     octaves: Octaves,
 ) -> FunctionRef {
     let (parts, tiles) = (parts(mode), octaves.tiles());
-    let corner = (kind == Kind::Quintic).then(|| quintic::corner(module, parts, tiles));
+    let corner = (kind != Kind::Quadrupole).then(|| quintic::corner(module, kind, parts, tiles));
     let slice = slice(module, kind, parts, tiles);
     let doc = "One more octave of the filtered noise in space.";
     let b = &Builder::new("volume_octave", doc);
@@ -98,7 +98,7 @@ pub(super) fn filtered(
         inverse: inverse.matrix,
         total: spread.covariance.raised(),
     };
-    let points = Points::of(&state);
+    let points = Points::of(&state, kind);
     let zeros = vec![b.float(0.0); parts];
     let width = kind.width();
 
@@ -139,7 +139,7 @@ pub(super) fn filtered(
     let weight = match kind {
         Kind::Quadrupole => root,
         // The offset is in units of the width.
-        Kind::Quintic => root * width,
+        Kind::Quintic | Kind::Materialx(_) => root * width,
     };
     let weight = weight * used;
     let totals = applied(&inverse.matrix, &kernels);

@@ -3,9 +3,9 @@
 //! With n a random direction and B = ±(nnᵀ − I/3), in units of the kernel's width:
 //! k = uᵀBu − tr(BP) and M = Σ κ E k, κ² = 3/(π^{3/2} a³ det(I + S)).
 
-use super::WIDTH;
 use super::points::Points;
 use super::symmetric::{PAIRS, Shape};
+use super::{Kind, WIDTH};
 use crate::noise::hash::direction;
 use crate::noise::window::start;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Uint, dot};
@@ -87,7 +87,7 @@ fn row(module: &mut Module, tiles: bool) -> FunctionRef {
     let sum = b.float_param("sum");
     let columns = [0, 1, 2].map(|i| ["d", "e"].map(|name| b.float_param(format!("{name}_{i}"))));
     let [first, dz, outer] = b.float_params(["y", "dz", "envelope"]);
-    let points = Points::declare(b, tiles);
+    let points = Points::declare(b, Kind::Quadrupole, tiles);
     let number = index.to_float();
     let points = points.stepped(1, number);
     let dy = first - number * (1.0 / WIDTH);
@@ -111,7 +111,7 @@ fn slice(module: &mut Module, tiles: bool) -> FunctionRef {
     let sum = b.float_param("sum");
     let columns = [0, 1, 2, 3, 4, 5].map(|i| b.float_param(format!("column_{i}")));
     let [y, first] = b.float_params(["y", "z"]);
-    let points = Points::declare(b, tiles);
+    let points = Points::declare(b, Kind::Quadrupole, tiles);
     let number = index.to_float();
     let points = points.stepped(2, number);
     let dz = first - number * (1.0 / WIDTH);

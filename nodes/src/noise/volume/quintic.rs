@@ -4,27 +4,32 @@
 //! Footprints narrow against a cell act on the polynomials of w, wider ones on the fit of their
 //! product, as in the plane.
 
-use super::NAMES;
 use super::points::Points;
 use super::quadrupole::sphere;
 use super::symmetric::{self, PAIRS, Symmetric};
+use super::{Kind, NAMES};
+use crate::noise::jenkins;
 use crate::noise::perlin::fit::{SPACE, Shape, Weight};
 use crate::noise::perlin::point::{between, fade};
 use crate::noise::perlin::profile::{averaged, window};
 use crate::noise::perlin::{WINDOW_ENERGY, WINDOW_MOMENT};
-use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Uint, dot};
+use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, dot};
 
 /// 1 over the standard deviation of the bare sum of kernels, (∫t²w²) (∫w²)² for a unit vector.
 pub(super) fn unit() -> f32 {
     1.0 / (WINDOW_ENERGY * WINDOW_MOMENT.sqrt())
 }
 
-fn gradient(key: Uint<'_>) -> [Float<'_>; 3] {
-    sphere(key.scramble())
+/// The direction at a lattice point.
+pub(super) fn gradient<'b>(point: Points<'b>, kind: Kind) -> [Float<'b>; 3] {
+    match kind {
+        Kind::Materialx(byte) => jenkins::direction(point.hash() >> (8 * u32::from(byte))),
+        _ => sphere(point.key.scramble()),
+    }
 }
 
 /// The unfiltered noise: eight corners.
-pub(super) fn point<'b>(points: Points<'b>, fractions: [Float<'b>; 3]) -> Float<'b> {
+pub(super) fn point<'b>(points: Points<'b>, fractions: [Float<'b>; 3], kind: Kind) -> Float<'b> {
     let ends = [0.0, 1.0].map(|end| fractions[0].literal(end));
     let offsets = fractions.map(|t| [t, t + -1.0]);
     let shares = fractions.map(fade);
@@ -33,7 +38,7 @@ pub(super) fn point<'b>(points: Points<'b>, fractions: [Float<'b>; 3]) -> Float<
         let rows = [0, 1].map(|y| {
             let row = slice.stepped(1, ends[y]);
             let corners = [0, 1].map(|x| {
-                let g = gradient(row.stepped(0, ends[x]).key);
+                let g = gradient(row.stepped(0, ends[x]), kind);
                 dot(g, [offsets[0][x], offsets[1][y], offsets[2][z]])
             });
             between(shares[0], corners)
@@ -45,12 +50,11 @@ pub(super) fn point<'b>(points: Points<'b>, fractions: [Float<'b>; 3]) -> Float<
 
 /// The filtered kernel, see [`crate::noise::perlin::fit::Fit::kernel`].
 pub(super) fn kernel<'b>(
-    key: Uint<'b>,
+    g: [Float<'b>; 3],
     (d, means): ([Float<'b>; 3], [Float<'b>; 3]),
     shape: &symmetric::Shape<'b>,
     parts: usize,
 ) -> Vec<Float<'b>> {
-    let g = gradient(key);
     // C = S (I + S)⁻¹ = I − P.
     let inverse = shape.inverse.rows();
     let covariance = [0, 1, 2].map(|i| {
@@ -120,7 +124,7 @@ impl<'b> Product<'b> {
 /// The kernel of one corner of the cell over a footprint that is narrow against it, with its
 /// derivatives in cells: the body of a fold over eight corners. Captures: the points, the fractions
 /// and the footprint's covariance.
-pub(super) fn corner(module: &mut Module, parts: usize, tiles: bool) -> FunctionRef {
+pub(super) fn corner(module: &mut Module, kind: Kind, parts: usize, tiles: bool) -> FunctionRef {
     let doc = "A corner of the noise over a footprint that is narrow against a cell.";
     let b = &Builder::new("volume_corner", doc);
     let index = b.uint_param("index");
@@ -128,7 +132,7 @@ pub(super) fn corner(module: &mut Module, parts: usize, tiles: bool) -> Function
         .iter()
         .map(|name| b.float_param(format!("sum_{name}")))
         .collect();
-    let mut point = Points::declare(b, tiles);
+    let mut point = Points::declare(b, kind, tiles);
     let fractions = b.float_params(["x", "y", "z"]);
     let covariance = Symmetric(PAIRS.map(|[i, j]| b.float_param(format!("c_{i}{j}"))));
     let [(x, along_x), (y, along_y), (z, along_z)] = [0, 1, 2].map(|axis| {
@@ -142,7 +146,7 @@ pub(super) fn corner(module: &mut Module, parts: usize, tiles: bool) -> Function
     };
 
     // E[g·X W(X)] = (g·t) E[W] + (Cg)·∇E[W].
-    let g = gradient(point.key);
+    let g = gradient(point, kind);
     let along = dot(g, [x, y, z]);
     let turned = covariance.times(g);
     let whole = product.derivative(&[]);

@@ -73,6 +73,7 @@ fn unit(v: Vec2<'_>) -> Vec2<'_> {
 fn build(module: &mut Module, mode: Mode, worley: Worley, image: &Image) -> FunctionRef {
     let kept = Kept {
         second: true,
+        third: false,
         numbers: true,
         places: true,
     };
@@ -170,6 +171,7 @@ fn through<'b>([l11, l21, l22]: [Float<'b>; 3], z: Vec2<'b>) -> Vec2<'b> {
 fn line(module: &mut Module, worley: Worley, image: &Image) -> FunctionRef {
     let kept = Kept {
         second: false,
+        third: false,
         numbers: true,
         places: true,
     };

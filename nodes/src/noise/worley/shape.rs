@@ -4,6 +4,7 @@
 //! Measured over 4 × 60 000 places (moments) and 1000 footprints of 400 samples for each size from
 //! 0.02 to 1 cells, at a jitter of 1; smaller jitters take the same curves.
 
+use crate::noise::components::Hash;
 use mipless_codegen::ir::Float;
 
 /// Of which point.
@@ -15,6 +16,8 @@ pub(crate) enum Output {
     Second,
     /// The second less the first.
     Difference,
+    /// The third nearest.
+    Third,
 }
 
 /// What a Worley noise is.
@@ -30,10 +33,16 @@ pub(crate) struct Worley {
     pub(crate) period: i32,
     /// Selects the points.
     pub(crate) seed: i32,
+    /// Which hash decides.
+    pub(crate) hash: Hash,
+    /// Which of MaterialX's three numbers of a point a solid has; else the one number.
+    pub(crate) channel: Option<u8>,
+    /// Whether points lie in space, or in the plane.
+    pub(crate) space: bool,
 }
 
-/// Mean and standard deviation at jitters of 0, ¼, ½, ¾ and 1: F1, F2, F2 − F1.
-const DISTANCES: [[[f32; 2]; 5]; 3] = [
+/// Mean and standard deviation at jitters of 0, ¼, ½, ¾ and 1: F1, F2, F2 − F1, F3.
+const DISTANCES: [[[f32; 2]; 5]; 4] = [
     [
         [0.3826, 0.1427],
         [0.3858, 0.1462],
@@ -55,19 +64,48 @@ const DISTANCES: [[[f32; 2]; 5]; 3] = [
         [0.2894, 0.2076],
         [0.2701, 0.2019],
     ],
+    [
+        [0.9082, 0.0923],
+        [0.9048, 0.1015],
+        [0.8981, 0.1207],
+        [0.895, 0.1411],
+        [0.8946, 0.1621],
+    ],
+];
+
+/// The same in space, over 60 000 places.
+const IN_SPACE: [[[f32; 2]; 5]; 4] = [
+    [
+        [0.4804, 0.1391],
+        [0.4831, 0.1409],
+        [0.4913, 0.1495],
+        [0.5058, 0.1613],
+        [0.52, 0.172],
+    ],
+    [
+        [0.7029, 0.079],
+        [0.7063, 0.0883],
+        [0.7112, 0.1082],
+        [0.7141, 0.1265],
+        [0.7163, 0.1429],
+    ],
+    [
+        [0.2225, 0.1849],
+        [0.2232, 0.1797],
+        [0.2198, 0.1732],
+        [0.2082, 0.1649],
+        [0.1963, 0.1573],
+    ],
+    [
+        [0.8624, 0.0735],
+        [0.8576, 0.08],
+        [0.8499, 0.0953],
+        [0.8453, 0.1109],
+        [0.8444, 0.1262],
+    ],
 ];
 
 impl Worley {
-    /// The least and the largest value.
-    pub(super) fn range(self) -> [f32; 2] {
-        match (self.solid, self.output) {
-            (true, Output::Difference) => [-1.0, 1.0],
-            (true, _) => [0.0, 1.0],
-            // No point of the window is farther than its corner.
-            (false, _) => [0.0, 3.6],
-        }
-    }
-
     /// Mean and variance over the plane.
     pub(crate) fn moments(self) -> [f32; 2] {
         if self.solid {
@@ -76,7 +114,8 @@ impl Worley {
                 _ => [0.5, 1.0 / 12.0],
             };
         }
-        let rows = &DISTANCES[self.output as usize];
+        let rows = if self.space { &IN_SPACE } else { &DISTANCES };
+        let rows = &rows[self.output as usize];
         // Lagrange's quartic through the five rows.
         let mut sums = [0.0f32; 2];
         for (i, row) in rows.iter().enumerate() {
@@ -98,7 +137,7 @@ impl Worley {
         }
         let [s0, power] = match self.output {
             Output::First => [0.465, 5.57],
-            Output::Second => [0.582, 3.49],
+            Output::Second | Output::Third => [0.582, 3.49],
             Output::Difference => [0.33, 5.0],
         };
         [falloff(size, s0, power), falloff(size, 0.22, 3.0)]
@@ -111,7 +150,8 @@ impl Worley {
             (true, Output::Difference) => [3.2, 12.0, 0.0],
             (true, _) => [2.2, 8.0, 0.0],
             (false, Output::First) => [0.0, 24.0, 70.0],
-            (false, Output::Second) => [0.0, 19.0, 17.0],
+            // That of the third was not measured: its variance has the second's scale.
+            (false, Output::Second | Output::Third) => [0.0, 19.0, 17.0],
             (false, Output::Difference) => [0.0, 60.0, 20.0],
         };
         let size = size.min(1e4);

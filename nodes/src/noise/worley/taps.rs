@@ -3,6 +3,9 @@
 use super::shape::{Output, Worley};
 use crate::noise::cell::passed::{Passed, passed};
 use crate::noise::cell::{hash, row_word, uniform};
+use crate::noise::components::Hash;
+use crate::noise::jenkins;
+use crate::noise::period::wrapped;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Uint, Vec2};
 
 /// x, y, weight: a unit Gaussian's integral to degree 5 (Stroud, E₂^{r²} 5-1).
@@ -22,9 +25,10 @@ const FAR: f32 = 1e6;
 /// What is known of the points nearest to a place: as much as the noise reads.
 #[derive(Clone, Copy)]
 pub(super) struct Nearest<'b> {
-    /// The squared distances of the nearest and of the second.
+    /// The squared distances of the nearest, of the second and of the third.
     first: Float<'b>,
     second: Option<Float<'b>>,
+    third: Option<Float<'b>>,
     /// Their numbers.
     value: Option<Float<'b>>,
     other: Option<Float<'b>>,
@@ -38,6 +42,8 @@ pub(super) struct Nearest<'b> {
 pub(super) struct Kept {
     /// The second as well.
     pub(super) second: bool,
+    /// And the third.
+    pub(super) third: bool,
     pub(super) numbers: bool,
     pub(super) places: bool,
 }
@@ -47,6 +53,7 @@ impl Kept {
     pub(super) fn of(worley: Worley) -> Self {
         Self {
             second: worley.output != Output::First,
+            third: worley.output == Output::Third,
             numbers: worley.solid,
             places: false,
         }
@@ -55,20 +62,21 @@ impl Kept {
 
 impl<'b> Scalars<'b> for Nearest<'b> {
     fn each(&self, visit: &mut dyn FnMut(Scalar<'b>)) {
-        (self.first, self.second, self.value, self.other).each(visit);
+        (self.first, self.second, self.third, self.value, self.other).each(visit);
         [self.at, self.other_at]
             .map(|at| at.map(|at| at.0))
             .each(visit);
     }
 
     fn replaced(self, next: &mut dyn FnMut() -> Scalar<'b>) -> Self {
-        let (first, second, value, other) =
-            (self.first, self.second, self.value, self.other).replaced(next);
+        let all = (self.first, self.second, self.third, self.value, self.other);
+        let (first, second, third, value, other) = all.replaced(next);
         let places = [self.at, self.other_at].map(|at| at.map(|at| at.0));
         let [at, other_at] = places.replaced(next).map(|at| at.map(Vec2));
         Self {
             first,
             second,
+            third,
             value,
             other,
             at,
@@ -84,6 +92,7 @@ impl<'b> Nearest<'b> {
         Self {
             first: far,
             second: kept.second.then_some(far),
+            third: kept.third.then_some(far),
             value: kept.numbers.then_some(zero),
             other: (kept.numbers && kept.second).then_some(zero),
             at: kept.places.then_some(Vec2::splat(zero)),
@@ -92,7 +101,7 @@ impl<'b> Nearest<'b> {
     }
 
     /// The parameters of so many places.
-    fn declare(b: &'b Builder, kept: Kept, count: usize) -> Vec<Self> {
+    pub(super) fn declare(b: &'b Builder, kept: Kept, count: usize) -> Vec<Self> {
         let named = |tap: usize| {
             let none = Self::none(b, kept);
             let mut names = none.names().into_iter();
@@ -108,6 +117,7 @@ impl<'b> Nearest<'b> {
         let parts = [
             ("first", Some(self.first)),
             ("second", self.second),
+            ("third", self.third),
             ("value", self.value),
             ("other", self.other),
             ("at_x", self.at.map(|at| at[0])),
@@ -120,7 +130,7 @@ impl<'b> Nearest<'b> {
     }
 
     /// Gives it as the results of a place.
-    fn results(&self, b: &'b Builder, tap: usize) {
+    pub(super) fn results(&self, b: &'b Builder, tap: usize) {
         for (name, part) in self.names().into_iter().zip(self.scalars()) {
             b.result(format!("{name}_{tap}"), part);
         }
@@ -138,6 +148,7 @@ impl<'b> Nearest<'b> {
             Output::First => first(),
             Output::Second => second(),
             Output::Difference => second() - first(),
+            Output::Third => of(self.other, self.third),
         }
     }
 
@@ -156,8 +167,8 @@ impl<'b> Nearest<'b> {
         self.other_at.expect("places that are read are kept") - self.at()
     }
 
-    /// One more point: its squared distance, its number and where it is.
-    fn nearer(self, q: Float<'b>, number: Float<'b>, place: Vec2<'b>) -> Self {
+    /// One more point: its squared distance, its number and, if that is kept, where it is.
+    pub(super) fn nearer(self, q: Float<'b>, number: Float<'b>, place: Option<Vec2<'b>>) -> Self {
         let won = q.lt(self.first);
         let second = |second: Float<'b>| second.min(self.first.max(q));
         let other = || {
@@ -165,17 +176,24 @@ impl<'b> Nearest<'b> {
             Some(won.select(self.value?, placed))
         };
         let other_at = || {
-            let before = self.second?;
+            let (before, place) = (self.second?, place?);
             let [at, other] = [self.at?, self.other_at?];
             let placed = place.zip(other, |new, old| q.lt(before).select(new, old));
             Some(at.zip(placed, |moved, placed| won.select(moved, placed)))
         };
+        // A third is what is left of three sorted numbers and a fourth.
+        let third = |third: Float<'b>| {
+            let second = self.second.expect("a third follows a second");
+            third.min(second.max(q))
+        };
         Self {
             first: self.first.min(q),
             second: self.second.map(second),
+            third: self.third.map(third),
             value: self.value.map(|value| won.select(number, value)),
             other: other(),
-            at: (self.at).map(|at| place.zip(at, |new, old| won.select(new, old))),
+            at: (self.at.zip(place))
+                .map(|(at, place)| place.zip(at, |new, old| won.select(new, old))),
             other_at: other_at(),
         }
     }
@@ -200,6 +218,35 @@ passed! {
     }
 }
 
+/// Where in its cell a point lies before the jitter, and its number.
+fn random<'b>(
+    worley: Worley,
+    [column, row]: [Int<'b>; 2],
+    seed: Uint<'b>,
+) -> ([Float<'b>; 2], Float<'b>) {
+    let nothing = seed.builder().float(0.0);
+    match worley.hash {
+        Hash::Mipless => {
+            let hash = hash(column, row_word(row, seed, worley.period), worley.period);
+            let shares = [hash & 0xffff, hash >> 16].map(|bits| bits.to_float() * (1.0 / 65536.0));
+            let channel = u32::from(worley.channel.unwrap_or_default());
+            let number = || uniform((hash ^ (0x9e37_79b9 + channel)).scramble());
+            (shares, if worley.solid { number() } else { nothing })
+        }
+        Hash::Materialx => {
+            let [x, y] = [column, row].map(|cell| wrapped(cell, worley.period).to_uint());
+            let of =
+                |channel: u32| jenkins::unit(jenkins::space([x, y, seed.literal(channel)], seed));
+            let number = match worley.channel {
+                _ if !worley.solid => nothing,
+                Some(channel) => of(u32::from(channel)),
+                None => jenkins::unit(jenkins::plane([x, y], seed)),
+            };
+            ([of(0), of(1)], number)
+        }
+    }
+}
+
 /// The point of one cell, the body of a fold over columns.
 fn column(module: &mut Module, worley: Worley, kept: Kept, count: usize) -> FunctionRef {
     let b = &Builder::new("worley_column", "The point of one cell.");
@@ -208,20 +255,15 @@ fn column(module: &mut Module, worley: Worley, kept: Kept, count: usize) -> Func
     let row = Row::declare(b);
     let places = declared_places(b, count);
     let place_x = row.start_x + index.to_float();
-    let word = row_word(row.row, row.seed, worley.period);
-    let hash = hash(row.cell_x + place_x.to_int(), word, worley.period);
-    let point = [(hash & 0xffff, place_x), (hash >> 16, row.place_y)].map(|(bits, place)| {
-        let share = bits.to_float() * (1.0 / 65536.0);
-        place + ((share + -0.5) * worley.jitter + 0.5)
-    });
-    let number = if kept.numbers {
-        uniform((hash ^ 0x9e37_79b9).scramble())
-    } else {
-        b.float(0.0)
-    };
+    let cell = [row.cell_x + place_x.to_int(), row.row];
+    let (shares, number) = random(worley, cell, row.seed);
+    let point = [(shares[0], place_x), (shares[1], row.place_y)]
+        .map(|(share, place)| place + ((share + -0.5) * worley.jitter + 0.5));
     for (tap, (nearest, place)) in nearest.into_iter().zip(places).enumerate() {
         let square = (place - Vec2(point)).norm2();
-        nearest.nearer(square, number, Vec2(point)).results(b, tap);
+        nearest
+            .nearer(square, number, Some(Vec2(point)))
+            .results(b, tap);
     }
     b.finish(module)
 }

@@ -12,6 +12,8 @@ pub(crate) enum Lattice {
     Triangular,
     /// The origin, and rows that are half a cell apart, each as high as a cell is wide.
     Staggered,
+    /// The corners and the middles of unit squares.
+    Quincunx,
 }
 
 impl Lattice {
@@ -34,6 +36,7 @@ impl Lattice {
         match self {
             Self::Square | Self::Staggered => 1.0,
             Self::Triangular => ROW,
+            Self::Quincunx => 0.5,
         }
     }
 
@@ -41,7 +44,7 @@ impl Lattice {
     pub(super) const fn origin(self) -> f64 {
         match self {
             Self::Square => 0.5,
-            Self::Triangular | Self::Staggered => 0.0,
+            Self::Triangular | Self::Staggered | Self::Quincunx => 0.0,
         }
     }
 
