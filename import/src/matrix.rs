@@ -55,7 +55,7 @@ pub(crate) fn determinant(matrix: &[f64]) -> f64 {
         return matrix.first().copied().unwrap_or(1.0);
     }
     let size = matrix.len().isqrt();
-    let sign = |i: usize| if i % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
     (0..size)
         .map(|i| sign(i) * matrix[i] * determinant(&minor(matrix, 0, i)))
         .sum()
@@ -65,7 +65,7 @@ pub(crate) fn determinant(matrix: &[f64]) -> f64 {
 pub(crate) fn inverse(matrix: &[f64]) -> Option<Vec<f64>> {
     let size = matrix.len().isqrt();
     let whole = determinant(matrix);
-    let sign = |i: usize| if i % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
     let entry = |i: usize| {
         let (row, column) = (i / size, i % size);
         sign(row + column) * determinant(&minor(matrix, column, row)) / whole

@@ -48,6 +48,5 @@ room! {
     valuenoise2d,
     whitenoise2d,
     worleynoise2d with things,
-    worleynoise2d,
     worleynoise3d,
 }

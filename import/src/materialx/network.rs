@@ -61,10 +61,13 @@ fn consequence() -> Refusal {
     Refusal::new(CONSEQUENCE, "")
 }
 
+/// Reads documents into a tree, below a root of their own.
+type Load<'a> = Box<dyn FnMut(&mut Tree, &mut Findings) -> Option<Id> + 'a>;
+
 /// What the network is made of beside the document.
 pub(crate) struct Library<'a> {
-    /// Reads MaterialX's own documents into the tree, below a root of their own.
-    pub(crate) load: Box<dyn FnMut(&mut Tree, &mut Findings) -> Option<Id> + 'a>,
+    /// Reads MaterialX's own documents.
+    pub(crate) load: Load<'a>,
     loaded: Option<Option<(Id, Definitions)>>,
 }
 

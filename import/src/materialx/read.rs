@@ -160,7 +160,8 @@ impl<'a> Reader<'a> {
             Ok(Ok(text)) => {
                 let before = tree.get(self.root).children.len();
                 if self.document(tree, &name, text).is_some() {
-                    for id in tree.get(self.root).children[before..].to_vec() {
+                    for place in before..tree.get(self.root).children.len() {
+                        let id = tree.get(self.root).children[place];
                         inherit(tree.get_mut(id), scope);
                     }
                 }
@@ -183,11 +184,7 @@ impl<'a> Reader<'a> {
 fn inherit(element: &mut Element, scope: &[(String, String)]) {
     for (key, value) in scope {
         match key.as_str() {
-            "colorspace" | "version" if element.attribute(key).is_none() => {
-                if key == "colorspace" {
-                    element.set(key, value);
-                }
-            }
+            "colorspace" if element.attribute(key).is_none() => element.set(key, value),
             "fileprefix" => {
                 let own = element.attribute(key).unwrap_or("").to_owned();
                 element.set(key, &format!("{value}{own}"));

@@ -116,7 +116,8 @@ impl Kind {
     /// them is within 1.3 % of all.
     pub(super) const fn band(self) -> (u32, f32) {
         match self {
-            Self::Gradient => (1, 0.119_27),
+            // MaterialX's directions have the second moments of a circle's.
+            Self::Gradient | Self::Materialx(_) => (1, 0.119_27),
             Self::Value => (0, 0.137_12),
         }
     }

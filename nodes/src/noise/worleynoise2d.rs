@@ -7,7 +7,8 @@ use crate::noise::worley::{self, Output, Worley};
 use crate::port;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Literal, Node, NodeSpec, OutputType, PortSpec, Range, Reach,
+    Behaviour, Category, Doc, InputView, Literal, Node, NodeSpec, OutputType, PortSpec, Range,
+    Reach,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {

@@ -6,8 +6,8 @@
 use super::passed::{Passed, passed};
 use super::place::declared;
 use super::{
-    Cells, Lattice, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside, report,
-    row, window,
+    Cells, Lattice, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside,
+    report, row, window,
 };
 use crate::noise::components::Hash;
 use crate::noise::period::wrapped;
