@@ -53,20 +53,21 @@ fn graphs_that_broke_a_law_break_none() {
 }
 
 /// How many graphs of [`SEEDS`] may break each law that is not kept yet, by any method. These numbers
-/// only fall.
+/// only fall, as long as the catalogue, and with it the graphs, are the same: with seventeen more nodes
+/// they are other graphs.
 const BROKEN: [(Law, usize); 5] = [
     // Smooth steps under footprints that are much wider than they are.
-    (Law::Spread, 2),
-    // Edges that lie at the value itself.
-    (Law::Vanishing, 18),
+    (Law::Spread, 1),
+    // Edges that lie at the value itself: a pattern's 0 or 1 into `floor`, cells, a divisor or a bound.
+    (Law::Vanishing, 21),
     // Seven points of what an input of the graph shapes, whose mean nobody knows beforehand, and what
     // has no mean.
-    (Law::Far, 14),
+    (Law::Far, 13),
     // Edges, too.
-    (Law::Rounding, 19),
+    (Law::Rounding, 13),
     // Five are off by .0001 at most where a point is exact (1, 13, 43, 45, 236), two by less than a
     // step of eight bits (67, 80). Not explained: .036 where a point is exact (165), .067 for .035 (203).
-    (Law::Worse, 9),
+    (Law::Worse, 6),
 ];
 
 /// Random graphs in every run. Of which a number is set by `MIPLESS_GRAPHS`, for runs of hours, every

@@ -203,10 +203,12 @@ fn no_package_reads_a_file_outside_its_folder() {
 fn every_change_passes_each_feature_alone_and_the_oldest_rust() {
     let ci = read(".ci/run");
     for words in [
-        "for features in '' files targets; do",
-        "cargo clippy -p mipless --all-targets --no-default-features --features \"$features\" -- -D warnings",
+        "both=(-p mipless -p mipless-runtime)",
+        "cargo clippy \"${both[@]}\" --all-targets --no-default-features -- -D warnings",
+        "--no-default-features --features mipless/files,mipless-runtime/files -- -D warnings",
+        "cargo clippy -p mipless --all-targets --no-default-features --features targets -- -D warnings",
+        "cargo clippy -p mipless-runtime --no-default-features --features gpu -- -D warnings",
         "cargo test -p mipless --no-default-features --test without_files",
-        "for features in '' files gpu; do",
         "s/^rust-version = ",
         "cargo package --workspace --exclude mipless-tests --no-verify",
     ] {

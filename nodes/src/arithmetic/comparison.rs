@@ -134,7 +134,8 @@ fn chosen<'b>(
     if lower.choice(node, "signature") == "boolean" {
         let [yes, no] = [1.0, 0.0].map(|truth| Signal::constant(lower.b(), truth));
         let branches = branches(&yes, &no);
-        return vec![(lower.algebra).selection(condition, thresholds, &branches)];
+        let truth = (lower.algebra).selection(condition, thresholds, &branches);
+        return vec![truth; node.ty.components()];
     }
     binary(lower, node, ["in1", "in2"], |lower, yes, no| {
         (lower.algebra).selection(condition, thresholds, &branches(yes, no))

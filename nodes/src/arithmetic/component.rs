@@ -28,7 +28,11 @@ macro_rules! components {
                 inputs: &[any("in", 0.0, "The vector or colour.")],
                 output: OutputType::Exactly(Type::Float),
                 reach: |inputs| Reach([inputs.reach("in").whole(inputs.components("in")); 4]),
-                class: |_| Behaviour::Function,
+                class: |_| Behaviour::Rough {
+                    error: 0.08,
+                    place: "has a mean that is off by up to 0.06 of its range where components take two \
+                        values, as those of a pattern of two colours",
+                },
                 example: example! { stringify!($node), concat!(r##"
     "board": { "type": "checkerboard", "inputs": { "color1": "#c08a52", "color2": "#204060" } },
     ""##, stringify!($node), r#"": { "type": ""#, stringify!($node),

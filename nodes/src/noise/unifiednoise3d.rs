@@ -29,7 +29,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         computes: "As `unifiednoise2d` with p = position · freq + offset and the nodes `noise3d`, \
             `cellnoise3d`, `worleynoise3d` and `fractal3d`. With the hash `materialx` p is first turned, \
             but for `worley`, by (jitter − 1) · 90000 degrees around (0.1, 1, 0), as MaterialX does.",
-        statistics: "Those of the noise that is chosen; see `unifiednoise2d`.",
+        statistics: "Those of the noise that is chosen, in space, with its spectrum. Before outmin and \
+            outmax mean and variance are those that `unifiednoise2d` states for its kinds. The range is \
+            outmin to outmax, a clamp in closed form, or that of the noise where clampoutput is off.",
         accuracy: "That of `noise3d`, `cellnoise3d`, `worleynoise3d` and `fractal3d`, whose code it \
             shares. At a point held by `tests/tests/parity.rs`.",
         references: "MaterialX 1.39 specification, node `unifiednoise3d`. Perlin 2002, *Improving \

@@ -1,12 +1,14 @@
 //! Levels with gamma.
 
-use crate::componentwise::{composed, exposed, numbers, transfer};
+use crate::componentwise::{composed, difference, exposed, numbers, product, transfer};
+use crate::port;
 use crate::port::any;
-use crate::transfer::range::{DOCLAMP, GAMMA, interpolated, passed, vanishing};
 use mipless_codegen::ir::Float;
-use mipless_codegen::moments::{Curve, Piecewise, RealPower, Signal, Transfer};
+use mipless_codegen::moments::{Curve, Piecewise, RealPower, Reciprocal, Signal, Transfer};
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach};
+use mipless_graph::{
+    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, PortSpec, Range, Reach,
+};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "levels",
@@ -53,6 +55,33 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     "levels": {"type": "levels", "inputs": {"in": {"node": "wave"}, "inlow": -0.8, "gamma": 2.2, "doclamp": true}}
 "# },
 };
+
+/// Where the width of the range varies and may be 0, by which the signal is divided.
+pub(super) fn vanishing(inputs: &dyn InputView) -> Option<Behaviour> {
+    let varies = ["inlow", "inhigh"]
+        .into_iter()
+        .find(|port| inputs.varies(port))?;
+    if inputs.same("inlow", "inhigh") {
+        return None;
+    }
+    let width = inputs.reach("inhigh") - inputs.reach("inlow");
+    (width.0.iter().any(|width| width.contains(0.0))).then_some(Behaviour::NoMoments {
+        port: varies,
+        reason: "inhigh − inlow divides and may be 0, where a quotient has neither mean nor variance",
+    })
+}
+
+/// The inverse of the exponent.
+pub(super) const GAMMA: PortSpec = any("gamma", 1.0, "The inverse of the exponent.")
+    .range(Range::hard(0.01, 100.0).with_soft(0.2, 5.0));
+
+/// Whether the result stays within the range of the output.
+pub(super) const DOCLAMP: PortSpec = port::flag(
+    "doclamp",
+    false,
+    "Whether the result is limited to lie between outlow and outhigh.",
+)
+.uniform();
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let limited = lower.flag(node, "doclamp");
@@ -107,4 +136,20 @@ pub(super) fn signed_power<'b>(t: Float<'b>, power: Float<'b>, limited: bool) ->
     }
     let raised = RealPower { power }.value(t.abs());
     t.lt(0.0).select(-raised, raised)
+}
+
+/// The share of the range that is passed, 0 at `low` and 1 at `high`; of the width of the range the
+/// mean is used.
+pub(super) fn passed<'b>(x: &Signal<'b>, low: &Signal<'b>, high: &Signal<'b>) -> Signal<'b> {
+    difference(x, low) * Reciprocal.value(difference(high, low).flat_mean())
+}
+
+/// low + (high − low) share.
+pub(super) fn interpolated<'b>(
+    lower: &mut Lower<'_, 'b>,
+    low: &Signal<'b>,
+    high: &Signal<'b>,
+    share: &Signal<'b>,
+) -> Signal<'b> {
+    low + product(lower, &(high - low), share)
 }

@@ -1,14 +1,12 @@
 //! Affine map from a range to a range.
 
-use crate::componentwise::{difference, numbers, product, transfer};
-use crate::port;
+use crate::componentwise::{numbers, transfer};
 use crate::port::any;
-use crate::transfer::levels;
-use mipless_codegen::moments::{Piecewise, Reciprocal, Signal, Transfer};
+use crate::transfer::levels::{self, DOCLAMP, GAMMA, interpolated, passed, vanishing};
+use mipless_codegen::moments::Piecewise;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Interval, Node, NodeSpec, OutputType, PortSpec, Range,
-    Reach,
+    Behaviour, Category, Doc, InputView, Interval, Node, NodeSpec, OutputType, Reach,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -75,37 +73,10 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-/// Where the width of the range varies and may be 0, by which the signal is divided.
-pub(super) fn vanishing(inputs: &dyn InputView) -> Option<Behaviour> {
-    let varies = ["inlow", "inhigh"]
-        .into_iter()
-        .find(|port| inputs.varies(port))?;
-    if inputs.same("inlow", "inhigh") {
-        return None;
-    }
-    let width = inputs.reach("inhigh") - inputs.reach("inlow");
-    (width.0.iter().any(|width| width.contains(0.0))).then_some(Behaviour::NoMoments {
-        port: varies,
-        reason: "inhigh − inlow divides and may be 0, where a quotient has neither mean nor variance",
-    })
-}
-
 /// Whether there is no power.
 fn straight(inputs: &dyn InputView) -> bool {
     !inputs.varies("gamma") && inputs.reach("gamma").whole(4) == Interval::point(1.0)
 }
-
-/// The inverse of the exponent.
-pub(super) const GAMMA: PortSpec = any("gamma", 1.0, "The inverse of the exponent.")
-    .range(Range::hard(0.01, 100.0).with_soft(0.2, 5.0));
-
-/// Whether the result stays within the range of the output.
-pub(super) const DOCLAMP: PortSpec = port::flag(
-    "doclamp",
-    false,
-    "Whether the result is limited to lie between outlow and outhigh.",
-)
-.uniform();
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let gamma = numbers(lower, node, "gamma");
@@ -124,20 +95,4 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         interpolated(lower, &outlow[i], &outhigh[i], &share)
     };
     (0..input.len()).map(component).collect()
-}
-
-/// The share of the range that is passed, 0 at `low` and 1 at `high`; of the width of the range the
-/// mean is used.
-pub(super) fn passed<'b>(x: &Signal<'b>, low: &Signal<'b>, high: &Signal<'b>) -> Signal<'b> {
-    difference(x, low) * Reciprocal.value(difference(high, low).flat_mean())
-}
-
-/// low + (high − low) share.
-pub(super) fn interpolated<'b>(
-    lower: &mut Lower<'_, 'b>,
-    low: &Signal<'b>,
-    high: &Signal<'b>,
-    share: &Signal<'b>,
-) -> Signal<'b> {
-    low + product(lower, &(high - low), share)
 }

@@ -1,7 +1,7 @@
 //! Affine map from a range to a range, without limits.
 
 use crate::port::any;
-use crate::transfer::range::{interpolated, passed, vanishing};
+use crate::transfer::levels::{interpolated, passed, vanishing};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Reach};
 
