@@ -68,16 +68,6 @@ impl Builder {
         self.specs.get(name).copied()
     }
 
-    /// Whether the catalogue has `node`, or `node.port`.
-    pub(crate) fn has(&self, name: &str) -> bool {
-        match name.split_once('.') {
-            Some((node, port)) => self
-                .spec(node)
-                .is_some_and(|spec| spec.input(port).is_some()),
-            None => self.specs.contains_key(name),
-        }
-    }
-
     /// A node with these inputs, read at `output`.
     pub(crate) fn node(
         &mut self,

@@ -7,7 +7,6 @@
 //! | `each(e)` | `e` for every channel `#` of the output |
 //! | `channel(e)` | the part `#` of `e`, or `e` where it is one number |
 //! | `case(e, 0: a, "x": b, else: c)` | by the literal `e`; a signal is something else |
-//! | `has("node.port", a, b)` | `a` where the catalogue has it, else `b` |
 //! | `given("port", a, b)` | `a` where the document says what the input holds, else `b` |
 //! | `fold(node, e)` | the node over all parts of `e` |
 //! | `rgba(c, a)`, `rgb(r, g, b)` | a colour with another alpha; a colour of three numbers |
@@ -312,10 +311,6 @@ impl Evaluation<'_> {
                 self.builder.node("power", inputs, "out")
             }
             "case" => self.case(argument(0)?, &arguments[1..]),
-            "has" => {
-                let which = if self.builder.has(text(0)?) { 1 } else { 2 };
-                self.value(argument(which)?)
-            }
             "given" => {
                 let which = if self.call.is_given(text(0)?) { 1 } else { 2 };
                 self.value(argument(which)?)

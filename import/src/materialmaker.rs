@@ -229,7 +229,7 @@ impl Maker<'_> {
         if !encoded {
             return Ok(value);
         }
-        let rule = rules().get("decoded", |_| false).ok_or_else(|| {
+        let rule = rules().get("decoded").ok_or_else(|| {
             Refusal::new("import-rule", "there is no rule for colours of a display")
         })?;
         self.builder.hint = "linear".to_owned();
@@ -340,15 +340,15 @@ impl Maker<'_> {
         }
         let rules = rules();
         let rule = if alpha {
-            match rules.get(&format!("{kind}.alpha"), |_| false) {
+            match rules.get(&format!("{kind}.alpha")) {
                 Some(rule) => rule,
                 None => return Ok(Value::float(1.0)),
             }
         } else {
             let several = format!("{kind}.{}", port.port);
             rules
-                .get(&several, |_| false)
-                .or_else(|| rules.get(&kind, |_| false))
+                .get(&several)
+                .or_else(|| rules.get(&kind))
                 .ok_or_else(|| Refusal::new("import-node-missing", "there is no such node here"))?
         };
         let signature = signatures().get(&kind);

@@ -5,8 +5,7 @@
 //! rotate2d = rotate2d(in: $in, amount: -$amount)
 //! ```
 //!
-//! Rules below `[unless NODE.PORT]` hold while the catalogue has no such port, and before those that
-//! always hold. A line that begins with a space goes on with the line before; one that begins with `#` is for
+//! A line that begins with a space goes on with the line before; one that begins with `#` is for
 //! people. An expression is made of
 //!
 //! - `$name`, an input of the node, and `$name(e)`, the same at the coordinate `e`;
@@ -37,9 +36,9 @@ pub(crate) enum Expr {
     },
 }
 
-/// Expressions by name, each with the port without which it holds, if it is bound to that.
+/// Expressions by name.
 #[derive(Debug, Default)]
-pub(crate) struct Rules(HashMap<String, Vec<(Option<String>, Expr)>>);
+pub(crate) struct Rules(HashMap<String, Expr>);
 
 impl Rules {
     /// The rules of a table.
@@ -47,30 +46,25 @@ impl Rules {
     /// # Panics
     /// If the table is not of this language: it is part of the crate, and a test reads it.
     pub(crate) fn parse(text: &str) -> Self {
-        let mut written: Vec<(Option<String>, String, String)> = Vec::new();
-        let mut unless: Option<String> = None;
+        let mut written: Vec<(&str, String)> = Vec::new();
         for line in text.lines() {
             if line.starts_with('#') || line.trim().is_empty() {
                 continue;
             }
-            if let Some(port) = line.strip_prefix("[unless ") {
-                unless = Some(port.trim_end_matches(']').to_owned());
-                continue;
-            }
             if line.starts_with(' ') {
-                let (.., rule) = written.last_mut().expect("a rule begins at the margin");
+                let (_, rule) = written.last_mut().expect("a rule begins at the margin");
                 rule.push_str(line);
                 continue;
             }
             let (name, rule) = line
                 .split_once(" = ")
                 .expect("a rule is `name = expression`");
-            written.push((unless.clone(), name.trim().to_owned(), rule.to_owned()));
+            written.push((name.trim(), rule.to_owned()));
         }
-        let mut rules: HashMap<String, Vec<(Option<String>, Expr)>> = HashMap::new();
-        for (unless, name, rule) in written {
-            let expr = Self::expression(&rule);
-            rules.entry(name).or_default().push((unless, expr));
+        let mut rules = HashMap::new();
+        for (name, rule) in written {
+            let twice = rules.insert(name.to_owned(), Self::expression(&rule));
+            assert!(twice.is_none(), "`{name}` has two rules");
         }
         Self(rules)
     }
@@ -86,21 +80,15 @@ impl Rules {
         expr
     }
 
-    /// The rule of that name that holds, where `has` says which ports there are.
-    pub(crate) fn get(&self, name: &str, has: impl Fn(&str) -> bool) -> Option<&Expr> {
-        let rules = self.0.get(name)?;
-        let bound = |(unless, _): &&(Option<String>, Expr)| {
-            unless.as_deref().is_some_and(|port| !has(port))
-        };
-        let free = |(unless, _): &&(Option<String>, Expr)| unless.is_none();
-        let found = rules.iter().find(bound).or_else(|| rules.iter().find(free));
-        found.map(|(_, expr)| expr)
+    /// The rule of that name.
+    pub(crate) fn get(&self, name: &str) -> Option<&Expr> {
+        self.0.get(name)
     }
 
     /// Every rule.
     #[cfg(test)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&String, &Expr)> {
-        (self.0.iter()).flat_map(|(name, rules)| rules.iter().map(move |(_, rule)| (name, rule)))
+        self.0.iter()
     }
 }
 
@@ -287,7 +275,7 @@ mod tests {
         let rules =
             Rules::parse("a = 1 - $x * 2\nb = brick(texcoord: uv,\n  mortar: -$m).height\n");
         assert_eq!(
-            rules.get("a", |_| false),
+            rules.get("a"),
             Some(&Expr::Binary(
                 '-',
                 Box::new(Expr::Number(1.0)),
@@ -302,7 +290,7 @@ mod tests {
             name,
             arguments,
             output,
-        }) = rules.get("b", |_| false)
+        }) = rules.get("b")
         else {
             panic!("a call");
         };

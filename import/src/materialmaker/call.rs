@@ -178,7 +178,7 @@ impl Call for NodeCall<'_, '_> {
         if signature.is_some_and(|known| known.inputs.iter().any(|port| port.name == name)) {
             return None;
         }
-        rules().get(&format!("{}.{name}", self.kind), |_| false)
+        rules().get(&format!("{}.{name}", self.kind))
     }
 
     fn is_given(&self, name: &str) -> bool {

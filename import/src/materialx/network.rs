@@ -87,7 +87,7 @@ pub(crate) struct Network<'a> {
     own: Definitions,
     library: Library<'a>,
     rules: &'static Rules,
-    /// The nodes of the catalogue, and `node.port` for their ports.
+    /// The nodes of the catalogue.
     known: FxHashSet<String>,
     scopes: Vec<Scope>,
     /// Scopes by where they are used.
@@ -119,15 +119,7 @@ impl<'a> Network<'a> {
             own,
             library,
             rules,
-            known: (specs.iter())
-                .flat_map(|spec| {
-                    let ports = spec
-                        .inputs
-                        .iter()
-                        .map(|port| format!("{}.{}", spec.name, port.name));
-                    ports.chain([spec.name.to_owned()])
-                })
-                .collect(),
+            known: specs.iter().map(|spec| spec.name.to_owned()).collect(),
             scopes: Vec::new(),
             inner: FxHashMap::default(),
             outer: FxHashMap::default(),
@@ -358,7 +350,7 @@ impl<'a> Network<'a> {
                     }
                 };
                 let rules = self.rules;
-                let rule = rule_of(rules, &definition, builder);
+                let rule = rule_of(rules, &definition);
                 let mut call = NodeCall::new(self, key, &definition, &output, &ty);
                 let value = match rule {
                     Some(rule) => crate::eval::eval(rule, builder, &mut call),
@@ -416,10 +408,9 @@ impl<'a> Network<'a> {
                 Refusal::new("import-node-missing", message)
             });
         };
-        let has = |port: &str| self.known.contains(port);
         let ruled = [&definition.name, &definition.node];
         if self.known.contains(&definition.node)
-            || ruled.iter().any(|name| self.rules.get(name, has).is_some())
+            || ruled.iter().any(|name| self.rules.get(name).is_some())
         {
             return Ok(Plan::Nodes(Rc::new(definition)));
         }
@@ -494,9 +485,8 @@ impl<'a> Network<'a> {
 }
 
 /// The rule of a definition, or of its node.
-fn rule_of<'r>(rules: &'r Rules, definition: &Definition, builder: &Builder) -> Option<&'r Expr> {
-    let rule = |name: &str| rules.get(name, |port| builder.has(port));
-    rule(&definition.name).or_else(|| rule(&definition.node))
+fn rule_of<'r>(rules: &'r Rules, definition: &Definition) -> Option<&'r Expr> {
+    (rules.get(&definition.name)).or_else(|| rules.get(&definition.node))
 }
 
 /// The definition that a node means.
