@@ -5,8 +5,9 @@
 //! be biased there. A filtered value C is drawn to F by the share l that brings it nearest to the
 //! true mean T of a pixel: l = Σ (F − C)(T − C) / Σ (F − C)² over places, as [`super::audit`]
 //! measures it for each band of footprints. Where inputs of the graph shape the texture, F moves
-//! with them, and F/C at their defaults times C takes its place. For points inside the footprint 1 − l is Wiener's share
-//! V/(V + N/7), with V the variance of T over places and N that of points within a footprint.
+//! with them, and F/C at their defaults times C takes its place, within the range of the signal. For
+//! points inside the footprint 1 − l is Wiener's share V/(V + N/7), with V the variance of T over
+//! places and N that of points within a footprint.
 
 use super::bands::Bands;
 use super::{Lower, Method};
@@ -93,8 +94,14 @@ impl<'b> Lower<'_, 'b> {
         let lost = drawn.lost(drawn.bands.of(&self.arguments));
         let each = signals.iter().enumerate().map(|(i, signal)| {
             let flat = signal.flat();
+            let mean = drawn.draw(i, flat.mean, lost);
+            let [low, high] = flat.range;
+            let is_bounded = low.is_finite() && high.is_finite();
             Signal {
-                mean: drawn.draw(i, flat.mean, lost),
+                mean: match drawn.far {
+                    Far::Times(_) if is_bounded => mean.clamp(low, high),
+                    _ => mean,
+                },
                 binary: None,
                 hermite: None,
                 ..flat
