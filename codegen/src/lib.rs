@@ -16,6 +16,6 @@ pub mod wgsl;
 
 pub use lower::{
     Audit, AuditedBand, AuditedOutput, Bundle, Ensemble, Image, Lower, Method, NodeDef, NodeRule,
-    Options, Over, ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Slopes, Upstream,
-    Widened, audit, compile, pairs,
+    Options, Over, ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Slopes, SumOfSteps,
+    Upstream, Widened, audit, compile, pairs,
 };

@@ -30,6 +30,7 @@ mod sampled;
 mod sampling;
 mod shape;
 mod slope;
+mod steps;
 mod symbols;
 mod table;
 mod taps;
@@ -37,7 +38,7 @@ mod torus;
 mod upstream;
 
 pub use audit::{Audit, AuditedBand, AuditedOutput, Remedy, Replaced};
-pub use definition::NodeDef;
+pub use definition::{NodeDef, SumOfSteps};
 pub use image::{Ensemble, Image, pairs};
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
@@ -426,7 +427,7 @@ impl<'g, 'b> Lower<'g, 'b> {
             let forks = uses[index] > 1;
             self.algebra.shares = forks || self.algebra.derives;
             let details = self.details.len();
-            let mixed = self.mixed(index);
+            let mixed = self.mixed(index).or_else(|| self.stepped(index, &uses));
             let next = match &mixed {
                 Some((_, first)) => *first,
                 None => self.algebra.next_symbol(),

@@ -53,6 +53,7 @@ pub use tabulated::Tabulated;
 pub(crate) use tabulated::{Sampled, Samples, sample_points};
 pub(crate) use tapped::{SIDES, Tapped};
 pub use transfer::{Gaussian, Moments, Rebuild, SharedTransfer, Transfer};
+pub(crate) use wave::Wholes;
 pub use wave::{Corner, LinearWave, SquareWave};
 
 /// Which moments signals carry.
@@ -100,6 +101,8 @@ pub struct Algebra<'b> {
     pub(crate) period: Option<f32>,
     /// Whether signals carry how they change with u and v.
     pub(crate) derives: bool,
+    /// What stands for whole parts, where a node that takes them is looked at alone.
+    pub(crate) wholes: Wholes<'b>,
     symbols: u32,
 }
 
@@ -114,6 +117,7 @@ impl<'b> Algebra<'b> {
             knots: 0,
             period: None,
             derives: false,
+            wholes: Wholes::Own,
             symbols: 0,
         }
     }

@@ -6,7 +6,8 @@
 
 /// The nodes of a room, a line each: `clamp,` declares the module of a node and lists its
 /// definition; `rounding::floor,` lists a row of a family, whose module the room declares itself;
-/// `brick with things,` lists a node that gives things numbers where its function `things` says so.
+/// `brick with things,` lists a node that gives things numbers where its function `things` says so;
+/// `quantize with steps,` one that is a function of whole parts.
 ///
 /// `cargo fmt` does not look into a macro for modules, so that the files of nodes are named to
 /// `rustfmt` one by one: see `.ci/run`.
@@ -19,13 +20,17 @@ macro_rules! room {
     (@definition $node:ident with things) => {
         mipless_codegen::NodeDef::new(&$node::SPEC, $node::lower).of_things($node::things)
     };
+    (@definition $node:ident with steps) => {
+        mipless_codegen::NodeDef::new(&$node::SPEC, $node::lower)
+            .of_steps(crate::noise::cell::steps::summed)
+    };
     (@definition $family:ident::$node:ident) => { $family::$node() };
-    ($($file:ident $(::$row:ident)? $(with $things:ident)?,)*) => {
+    ($($file:ident $(::$row:ident)? $(with $sums:ident)?,)*) => {
         $(room! { @module $file $(::$row)? })*
 
         /// The definitions of the room's nodes, in the order of the reference pages.
         pub(crate) const NODES: &[mipless_codegen::NodeDef] =
-            &[$(room! { @definition $file $(::$row)? $(with $things)? }),*];
+            &[$(room! { @definition $file $(::$row)? $(with $sums)? }),*];
     };
 }
 

@@ -215,7 +215,7 @@ fn rooms_list_their_nodes_one_a_line_and_categories_are_together() {
         let mut listed = room(def.spec.category).lines().filter_map(|line| {
             let line = line.strip_prefix("    ")?.strip_suffix(',')?;
             let (_, node) = line.split_once("::").unwrap_or(("", line));
-            let node = node.strip_suffix(" with things").unwrap_or(node);
+            let node = node.split(" with ").next().unwrap_or(node);
             // A name that is a keyword is written raw.
             Some(node.strip_prefix("r#").unwrap_or(node))
         });

@@ -25,7 +25,7 @@ room! {
     ln,
     modulo,
     power,
-    quantize,
+    quantize with steps,
     range,
     remap,
     rounding::round,

@@ -13,7 +13,7 @@ const FLOOR: f64 = 0.004;
 /// What people build of `fract`, `floor` and the like of coordinates `u` and `v`, of the ids `id` of
 /// regions and `cell` of cells; the error of `o` that is allowed where a pixel is finest, and
 /// anywhere.
-const GRAPHS: [(&str, [f64; 2], &str); 14] = [
+const GRAPHS: [(&str, [f64; 2], &str); 19] = [
     (
         "stripes by floor and modulo",
         [0.01, 0.02],
@@ -76,8 +76,33 @@ const GRAPHS: [(&str, [f64; 2], &str); 14] = [
     ),
     (
         "random colours of the steps of a coordinate",
-        [0.015, 0.08],
+        [0.002, 0.01],
         r#""x":{"type":"multiply","inputs":{"in1":{"node":"u"},"in2":6}},"f":{"type":"floor","inputs":{"in":{"node":"x"}}},"o":{"type":"randomcolor","inputs":{"in":{"node":"f"}}}"#,
+    ),
+    (
+        "cells of a position that is rounded down",
+        [0.002, 0.01],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"uv"},"in2":6}},"f":{"type":"floor","inputs":{"in":{"node":"x"}}},"o":{"type":"cellnoise2d","inputs":{"texcoord":{"node":"f"}}}"#,
+    ),
+    (
+        "a hash of rounded coordinates by a sine",
+        [0.002, 0.01],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"uv"},"in2":5}},"f":{"type":"round","inputs":{"in":{"node":"x"}}},"d":{"type":"dotproduct","inputs":{"in1":{"node":"f"},"in2":[12.9898,78.233]}},"s":{"type":"sin","inputs":{"in":{"node":"d"}}},"m":{"type":"multiply","inputs":{"in1":{"node":"s"},"in2":43758.5}},"o":{"type":"fract","inputs":{"in":{"node":"m"}}}"#,
+    ),
+    (
+        "a random number of quantised coordinates, in some of their steps",
+        [0.002, 0.01],
+        r#""p":{"type":"quantize","inputs":{"in":{"node":"u"},"steps":5}},"y":{"type":"multiply","inputs":{"in1":{"node":"v"},"in2":4}},"q":{"type":"ceil","inputs":{"in":{"node":"y"}}},"j":{"type":"multiply","inputs":{"in1":{"node":"q"},"in2":57}},"s":{"type":"add","inputs":{"in1":{"node":"p"},"in2":{"node":"j"}}},"r":{"type":"randomfloat","inputs":{"in":{"node":"s"}}},"k":{"type":"modulo","inputs":{"in1":{"node":"q"},"in2":3}},"e":{"type":"ifgreater","inputs":{"value1":{"node":"k"},"value2":0.5,"in1":1,"in2":0.2}},"o":{"type":"multiply","inputs":{"in1":{"node":"r"},"in2":{"node":"e"}}}"#,
+    ),
+    (
+        "random colours of the steps of a warped coordinate",
+        [0.01, 0.02],
+        r#""w":{"type":"noise2d","inputs":{"frequency":2,"amplitude":0.3}},"p":{"type":"add","inputs":{"in1":{"node":"u"},"in2":{"node":"w"}}},"x":{"type":"multiply","inputs":{"in1":{"node":"p"},"in2":6}},"f":{"type":"floor","inputs":{"in":{"node":"x"}}},"o":{"type":"randomcolor","inputs":{"in":{"node":"f"}}}"#,
+    ),
+    (
+        "stripes of random colours over a ramp of their steps",
+        [0.005, 0.02],
+        r#""x":{"type":"multiply","inputs":{"in1":{"node":"u"},"in2":6}},"f":{"type":"floor","inputs":{"in":{"node":"x"}}},"c":{"type":"randomcolor","inputs":{"in":{"node":"f"}}},"g":{"type":"multiply","inputs":{"in1":{"node":"f"},"in2":0.005}},"o":{"type":"add","inputs":{"in1":{"node":"c"},"in2":{"node":"g"}}}"#,
     ),
     (
         "a ramp of the steps of a coordinate",

@@ -56,6 +56,13 @@ impl Read {
     }
 }
 
+impl Function {
+    /// Which of its parameters it reads.
+    pub(crate) fn read_parameters(&self) -> Vec<bool> {
+        Read::of(self, vec![true; self.results.len()]).parameters
+    }
+}
+
 impl Module {
     /// The module without idle state.
     pub(super) fn without_idle_state(mut self) -> Self {

@@ -1,9 +1,10 @@
 //! What nodes that give things numbers are asked for: any function of the numbers.
 
+use super::steps::{self, Steps};
 use super::torus::alone;
 use super::{Arguments, Compiler, Lower, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
-use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Scalar, Scalars, Type};
+use crate::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Type};
 use crate::moments::{Algebra, Mode, Signal};
 use mipless_graph::{NodeId, Source};
 use std::sync::Arc;
@@ -35,10 +36,12 @@ impl<'b> Scalars<'b> for Ensemble<'b> {
 }
 
 /// A function of the number of a thing, in [0, 1), which a node sums over its things: the number
-/// itself, unless something else is made of it.
+/// itself, unless something else is made of it. Or one of the whole parts of coordinates.
 #[derive(Clone, Debug)]
 pub struct Image {
     function: Option<FunctionRef>,
+    /// Of how many whole parts it is a function, if it is one of them.
+    axes: Option<usize>,
     channels: usize,
     /// The inputs of the graph, if it reads any.
     parameters: Vec<Type>,
@@ -57,6 +60,7 @@ impl Image {
     fn identity() -> Self {
         Self {
             function: None,
+            axes: None,
             channels: 1,
             parameters: Vec::new(),
             key: String::new(),
@@ -77,10 +81,7 @@ impl Image {
             return known.clone();
         }
         let region = super::fusion::regions(compiler, ends, &[NodeId(source as u32)]);
-        let is_live = region.iter().any(|&node| {
-            let mut inputs = compiler.graph.nodes[node].inputs.iter();
-            inputs.any(|input| matches!(input.source, Source::Parameter(_)))
-        });
+        let is_live = is_live(compiler, &region);
         let of = (source, own, ends, &region[..], is_live);
         let function = function(compiler, lower.module, of);
         let channels = function.results.len();
@@ -98,9 +99,36 @@ impl Image {
                 false => Vec::new(),
             },
             function: Some(function),
+            axes: None,
             channels,
             key: key.clone(),
             known,
+        };
+        compiler.images.borrow_mut().insert(key, image.clone());
+        image
+    }
+
+    /// The components of some of the nodes that are functions of whole parts.
+    pub(super) fn of_steps(lower: &mut Lower<'_, '_>, steps: &Steps, ends: &[usize]) -> Self {
+        let compiler = lower.compiler;
+        let key = format!("image of steps {:?} {ends:?}", steps.roundings);
+        if let Some(known) = compiler.images.borrow().get(&key) {
+            return known.clone();
+        }
+        let is_live = is_live(compiler, &steps.region(compiler, ends));
+        let function = steps.function(compiler, lower.module, ends, is_live);
+        let image = Self {
+            parameters: match is_live {
+                true => (lower.arguments.parameters.iter())
+                    .map(|p| p.ty())
+                    .collect(),
+                false => Vec::new(),
+            },
+            channels: function.results.len(),
+            function: Some(function),
+            axes: Some(steps.axes()),
+            key: key.clone(),
+            known: (!is_live).then(|| Arc::new(steps.sampled(compiler, ends).moments())),
         };
         compiler.images.borrow_mut().insert(key, image.clone());
         image
@@ -136,6 +164,24 @@ impl Image {
             Some(function) => number.builder().call(function, (number, parameters)),
         }
     }
+
+    /// Its components for the whole parts of coordinates.
+    ///
+    /// # Panics
+    /// If it is no function of so many whole parts.
+    pub fn of_cell<'c>(&self, cell: &[Int<'c>], parameters: &[Scalar<'c>]) -> Vec<Float<'c>> {
+        assert_eq!(self.axes, Some(cell.len()), "the whole parts of an image");
+        let function = self.function.as_ref().expect("an image of whole parts");
+        cell[0].builder().call(function, (cell, parameters))
+    }
+}
+
+/// Whether inputs of the graph shape nodes.
+fn is_live(compiler: &Compiler<'_>, region: &[usize]) -> bool {
+    region.iter().any(|&node| {
+        let mut inputs = compiler.graph.nodes[node].inputs.iter();
+        inputs.any(|input| matches!(input.source, Source::Parameter(_)))
+    })
 }
 
 impl<'b> Lower<'_, 'b> {
@@ -201,8 +247,13 @@ fn one_more(module: &mut Module, image: &Image) -> FunctionRef {
         .collect();
     let state: Vec<Float<'_>> = names.iter().map(|name| b.float_param(name)).collect();
     let parameters = image.declare(b);
-    let number = (index.to_float() + 0.5) * (1.0 / LIVE_NUMBERS as f32);
-    let values = image.of(number, &parameters);
+    let values = match image.axes {
+        None => {
+            let number = (index.to_float() + 0.5) * (1.0 / LIVE_NUMBERS as f32);
+            image.of(number, &parameters)
+        }
+        Some(axes) => image.of_cell(&steps::scattered(index, axes), &parameters),
+    };
     let products = pairs(channels).map(|(i, k)| values[i] * values[k]);
     let parts: Vec<Float<'_>> = values.iter().copied().chain(products).collect();
     b.sums(names, state, parts);
@@ -248,7 +299,13 @@ fn moments(module: &Module) -> [Vec<f32>; 2] {
     let inputs = [Input::Floats(&numbers)];
     let evaluator = Evaluator::<f32>::new(module);
     evaluator.evaluate(&mut Scratch::new(), &inputs, NUMBERS, &mut values);
-    let mean = |of: &dyn Fn(usize) -> f64| (0..NUMBERS).map(of).sum::<f64>() / NUMBERS as f64;
+    moments_of(&values)
+}
+
+/// Means and covariance of components.
+pub(super) fn moments_of(values: &[Vec<f32>]) -> [Vec<f32>; 2] {
+    let count = values.first().map_or(1, Vec::len);
+    let mean = |of: &dyn Fn(usize) -> f64| (0..count).map(of).sum::<f64>() / count as f64;
     let means: Vec<f64> = (values.iter())
         .map(|values| mean(&|i| f64::from(values[i])))
         .collect();

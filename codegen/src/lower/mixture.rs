@@ -8,16 +8,18 @@
 //! with their covariance, and its own number among them where something else reads it.
 
 use super::image::Image;
+use super::steps::{self, Steps};
 use super::{Arguments, Bundle, Compiler, Facts, Lower, Method, NodeDef, Options};
 use crate::ir::Module;
 use crate::moments::{Algebra, Mode, Signal, Symbol};
 use mipless_graph::{Behaviour, Graph, Node, NodeId, Source};
 use rustc_hash::FxHashMap;
+use smallvec::{SmallVec, smallvec};
 
 /// The most nodes of an image, which is evaluated for each thing.
-const LONGEST: usize = 64;
+pub(super) const LONGEST: usize = 64;
 /// The most components of an image: their covariance is summed too.
-const COMPONENTS: usize = 12;
+pub(super) const COMPONENTS: usize = 12;
 
 /// Which nodes of a graph are images of things.
 #[derive(Clone, Debug, Default)]
@@ -26,11 +28,20 @@ pub(super) struct Mixtures {
     ends: FxHashMap<usize, Vec<usize>>,
     /// Of each of these the node that gives the numbers.
     sources: FxHashMap<usize, usize>,
+    /// The nodes that are functions of the same whole parts.
+    steps: Vec<Steps>,
+    /// Of each of these which.
+    stepped: FxHashMap<usize, usize>,
 }
 
 impl Mixtures {
     pub(super) fn is_empty(&self) -> bool {
-        self.sources.is_empty()
+        self.sources.is_empty() && self.stepped.is_empty()
+    }
+
+    /// The whole parts that a node is a function of.
+    pub(super) fn steps(&self, index: usize) -> Option<&Steps> {
+        Some(&self.steps[*self.stepped.get(&index)?])
     }
 
     /// What the lowering of a node reads.
@@ -43,8 +54,17 @@ impl Mixtures {
             .sources
             .get(&index)
             .map(|&source| NodeId(source as u32));
-        let inputs = (graph.nodes[index].inputs.iter())
-            .filter(move |_| source.is_none())
+        let (readers, rounded): (&[usize], bool) = match self.stepped.get(&index) {
+            Some(&steps) => (&self.steps[steps].roundings, true),
+            None => (&[], false),
+        };
+        let readers: SmallVec<[usize; 4]> = match (source, rounded) {
+            (Some(_), _) => SmallVec::new(),
+            (None, true) => readers.into(),
+            (None, false) => smallvec![index],
+        };
+        let inputs = (readers.into_iter())
+            .flat_map(|reader| &graph.nodes[reader].inputs)
             .filter_map(|input| match input.source {
                 Source::Node(id) => Some(id),
                 _ => None,
@@ -70,14 +90,38 @@ impl Mixtures {
 }
 
 /// What a node's output depends on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Origin {
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Origin {
     /// Numbers and inputs of the graph.
     Nothing,
     /// The numbers of the things of one node.
     Things(usize),
+    /// The whole parts that these nodes take, in their order.
+    Steps(SmallVec<[usize; 4]>),
     /// Anything else.
     Place,
+}
+
+impl Origin {
+    /// Of what depends on both.
+    fn with(self, other: &Self) -> Self {
+        match (self, other) {
+            (one, Self::Nothing) => one,
+            (Self::Nothing, other) => other.clone(),
+            (Self::Steps(mut of), Self::Steps(others)) => {
+                of.extend_from_slice(others);
+                of.sort_unstable();
+                of.dedup();
+                if of.len() > steps::MOST_NODES {
+                    Self::Place
+                } else {
+                    Self::Steps(of)
+                }
+            }
+            (one, other) if one == *other => one,
+            _ => Self::Place,
+        }
+    }
 }
 
 /// What each node's output depends on.
@@ -90,19 +134,17 @@ fn origins(graph: &Graph, catalogue: &[NodeDef]) -> Vec<Origin> {
         };
         for input in &node.inputs {
             let of = match &input.source {
-                Source::Literal(_) | Source::Parameter(_) => Origin::Nothing,
-                Source::Surface => Origin::Place,
-                Source::Node(id) => origins[id.index()],
+                Source::Literal(_) | Source::Parameter(_) => &Origin::Nothing,
+                Source::Surface => &Origin::Place,
+                Source::Node(id) => &origins[id.index()],
             };
-            origin = match (origin, of) {
-                (one, Origin::Nothing) => one,
-                (Origin::Nothing, other) => other,
-                (one, other) if one == other => one,
-                _ => Origin::Place,
-            };
+            origin = origin.with(of);
         }
-        if origin == Origin::Place && (catalogue[node.definition].things)(node) {
+        let definition = &catalogue[node.definition];
+        if origin == Origin::Place && (definition.things)(node) {
             origin = Origin::Things(index);
+        } else if origin == Origin::Place && definition.steps.is_some() {
+            origin = Origin::Steps(smallvec![index]);
         }
         origins.push(origin);
     }
@@ -134,16 +176,32 @@ pub(super) fn found(
         }
     }
     let mut ends: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
+    let mut stepped: Vec<(&[usize], Vec<usize>)> = Vec::new();
     for (index, origin) in origins.iter().enumerate() {
-        if let Origin::Things(source) = *origin
-            && source != index
-            && is_read[index]
-            && facts.live[index] > 0
-        {
-            ends.entry(source).or_default().push(index);
+        if !is_read[index] || facts.live[index] == 0 {
+            continue;
+        }
+        match origin {
+            Origin::Things(source) if *source != index => {
+                ends.entry(*source).or_default().push(index);
+            }
+            Origin::Steps(of) if !of.contains(&index) => {
+                match stepped.iter_mut().find(|(known, _)| known == &&of[..]) {
+                    Some((_, ends)) => ends.push(index),
+                    None => stepped.push((of, vec![index])),
+                }
+            }
+            _ => {}
         }
     }
     let compiler = Compiler::new((graph, facts), catalogue, options);
+    for (roundings, ends) in stepped {
+        if let Some(steps) = Steps::found(&compiler, &origins, roundings, ends) {
+            let place = mixtures.steps.len();
+            (mixtures.stepped).extend(steps.ends.iter().map(|&end| (end, place)));
+            mixtures.steps.push(steps);
+        }
+    }
     for (source, mut of_source) in ends {
         curved(&compiler, source, &mut of_source);
         let mut components = 0;
@@ -204,9 +262,9 @@ fn curved(compiler: &Compiler<'_>, source: usize, ends: &mut Vec<usize>) {
 /// What a source has made of its things for a node that is a function of them.
 #[derive(Clone, Debug)]
 pub(super) struct Mixed<'b> {
-    bundle: Bundle<'b>,
+    pub(super) bundle: Bundle<'b>,
     /// The symbols from this one on are the mixture's own.
-    first: Symbol,
+    pub(super) first: Symbol,
 }
 
 impl<'b> Lower<'_, 'b> {

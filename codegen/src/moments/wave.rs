@@ -5,6 +5,7 @@ mod linear;
 
 #[cfg(test)]
 pub(super) use floor::Staircase;
+pub(crate) use floor::Wholes;
 pub use linear::{Corner, LinearWave};
 
 use super::{Gaussian, Moments, Normal, SharedTransfer, Transfer};

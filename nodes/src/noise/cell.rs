@@ -5,12 +5,14 @@
 //! whose axes are the lattice's that is exact, for others what errs is that a truncated normal's
 //! shear is not normal.
 //!
-//! What is summed is any function of the numbers: the [`Image`] that is asked for.
+//! What is summed is any function of the numbers, or of the cells themselves: the [`Image`] that is
+//! asked for.
 
 pub(crate) mod line;
 pub(crate) mod passed;
 pub(crate) mod place;
 pub(crate) mod space;
+pub(crate) mod steps;
 
 use super::components::Hash;
 use super::field::Spread;
@@ -29,7 +31,7 @@ use passed::{Passed, passed};
 const REACH: f32 = 2.8;
 
 /// The most rows or columns of a window; footprints that need more fade.
-const MOST: f32 = 24.0;
+pub(crate) const MOST: f32 = 24.0;
 
 /// No footprint is narrower, in squared cells.
 const NARROWEST: f32 = 1e-12;
@@ -90,20 +92,47 @@ impl Lattice {
         }
     }
 
-    /// The number of a cell of either, given what the others share with it.
-    fn number<'b>(self, cell: [Int<'b>; 2], shared: Uint<'b>, space: bool) -> Float<'b> {
-        if space {
-            self.in_layer(cell, shared)
-        } else {
-            self.in_plane(cell, shared)
-        }
-    }
-
     /// What all cells share.
     fn scrambled(self, b: &Builder, salt: u32) -> Uint<'_> {
         match self.hash {
             Hash::Mipless => lattice_seed(b, self.seed, salt),
             Hash::Materialx => b.uint(jenkins::seed(self.seed)),
+        }
+    }
+}
+
+/// What the image that is summed is a function of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Content {
+    /// The numbers that cells of the plane have.
+    InPlane(Lattice),
+    /// Those that cells of a layer of space have.
+    InLayer(Lattice),
+    /// The cells themselves: the whole parts of the two coordinates.
+    Wholes,
+}
+
+impl Content {
+    /// The image of a cell, given what the others share with it.
+    fn image<'b>(
+        self,
+        image: &Image,
+        cell: [Int<'b>; 2],
+        shared: Uint<'b>,
+        parameters: &[Scalar<'b>],
+    ) -> Vec<Float<'b>> {
+        match self {
+            Self::InPlane(lattice) => image.of(lattice.in_plane(cell, shared), parameters),
+            Self::InLayer(lattice) => image.of(lattice.in_layer(cell, shared), parameters),
+            Self::Wholes => image.of_cell(&cell, parameters),
+        }
+    }
+
+    /// What all cells share.
+    fn scrambled(self, b: &Builder, salt: u32) -> Uint<'_> {
+        match self {
+            Self::InPlane(lattice) | Self::InLayer(lattice) => lattice.scrambled(b, salt),
+            Self::Wholes => b.uint(0),
         }
     }
 }
@@ -145,16 +174,16 @@ pub(crate) fn coincidence(variance: Float<'_>) -> Float<'_> {
 pub(crate) fn filtered<'b>(
     lower: &mut Lower<'_, 'b>,
     position: &[Signal<'b>],
-    lattice: Lattice,
+    content: Content,
 ) -> Vec<Signal<'b>> {
     let mode = lower.mode();
     let spread = Spread::of(position);
     report(lower, spread.eigenvalues[0].sqrt());
     let (image, parameters) = lower.image();
-    let key = format!("cells {mode:?} {lattice:?} {}", image.key());
-    let function = lower.function(&key, |module| build(module, mode, lattice, &image));
+    let key = format!("cells {mode:?} {content:?} {}", image.key());
+    let function = lower.function(&key, |module| build(module, mode, content, &image));
     let widest = spread.covariance[0].max(spread.covariance[2]);
-    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0]).lt(1.0));
+    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0], MOST).lt(1.0));
     let others = (parameters, ensemble);
     let results = place::called(lower, &function, (position, &spread), others);
     let (fields, rest) = results.split_at(results.len().min(3 * image.channels()));
@@ -167,19 +196,19 @@ pub(crate) fn filtered<'b>(
 
 /// The window of a standard deviation: where it starts, and how many cells it has.
 fn window<'b>(mean: Float<'b>, sd: Float<'b>) -> [Float<'b>; 2] {
-    around(mean, sd * REACH)
+    around(mean, sd * REACH, MOST)
 }
 
-/// A window over `count` = ⌈2r⌉ + 1 cells that starts at ⌊m − r⌋.
-fn around<'b>(mean: Float<'b>, reach: Float<'b>) -> [Float<'b>; 2] {
+/// A window over `count` = ⌈2r⌉ + 1 cells, `most` at most, that starts at ⌊m − r⌋.
+fn around<'b>(mean: Float<'b>, reach: Float<'b>, most: f32) -> [Float<'b>; 2] {
     let count = 1.0 - (reach * -2.0).floor();
-    [(mean - reach).floor(), count.clamp(1.0, MOST)]
+    [(mean - reach).floor(), count.clamp(1.0, most)]
 }
 
-/// 1, falling to 0 as a footprint of this standard deviation fills the largest window.
-fn fading(sd: Float<'_>) -> Float<'_> {
-    const LARGEST: f32 = (MOST - 1.0) / (2.0 * REACH);
-    (sd * (-4.0 / LARGEST) + 4.0).clamp(0.0, 1.0)
+/// 1, falling to 0 as a footprint of this standard deviation fills a window of `most` cells.
+fn fading(sd: Float<'_>, most: f32) -> Float<'_> {
+    let largest = (most - 1.0) / (2.0 * REACH);
+    (sd * (-4.0 / largest) + 4.0).clamp(0.0, 1.0)
 }
 
 /// How many cells a window has, or none of what has faded.
@@ -206,7 +235,7 @@ passed! {
 }
 
 /// The cells of one row, the body of a fold over columns.
-fn column(module: &mut Module, lattice: Lattice, space: bool, image: &Image) -> FunctionRef {
+fn column(module: &mut Module, content: Content, image: &Image) -> FunctionRef {
     let b = &Builder::new("cell_column", "One cell of a row.");
     let index = b.uint_param("index");
     let sums = LineSums::declare(b, image.channels());
@@ -216,9 +245,10 @@ fn column(module: &mut Module, lattice: Lattice, space: bool, image: &Image) -> 
     let parameters = image.declare(b);
     let place = row.start + index.to_float();
     let cell = [cells.cell_x + place.to_int(), cells.row];
-    let number = lattice.number(cell, cells.seed, space);
     let edge = [place + 1.0 - row.mean, row.inverse_sd];
-    let values = image.of(number, &parameters).into_iter();
+    let values = content
+        .image(image, cell, cells.seed, &parameters)
+        .into_iter();
     let d: Vec<Float<'_>> = values
         .zip(centre)
         .map(|(value, centre)| value - centre)
@@ -292,8 +322,8 @@ passed! {
 }
 
 /// One row of cells, the body of a fold.
-fn row(module: &mut Module, lattice: Lattice, space: bool, image: &Image) -> FunctionRef {
-    let column = column(module, lattice, space, image);
+fn row(module: &mut Module, content: Content, image: &Image) -> FunctionRef {
+    let column = column(module, content, image);
     let b = &Builder::new("cell_row", "One row of cells.");
     let index = b.uint_param("index");
     let count = image.channels();
@@ -313,7 +343,7 @@ fn row(module: &mut Module, lattice: Lattice, space: bool, image: &Image) -> Fun
     // The cells that count lie within an ellipse.
     let aside = (slice.moved * cells.inverse_sd_y).square();
     let left = (aside * (-1.0 / (REACH * REACH)) + 1.0).max(0.0).sqrt();
-    let [start, columns] = around(mean, sd * REACH * left);
+    let [start, columns] = around(mean, sd * REACH * left, MOST);
     let line = Row {
         start,
         mean,
@@ -403,14 +433,14 @@ impl<'b> Plane<'b> {
     }
 }
 
-fn build(module: &mut Module, mode: Mode, lattice: Lattice, image: &Image) -> FunctionRef {
-    let row = (mode.filters()).then(|| row(module, lattice, false, image));
+fn build(module: &mut Module, mode: Mode, content: Content, image: &Image) -> FunctionRef {
+    let row = (mode.filters()).then(|| row(module, content, image));
     let b = &Builder::new("cells", "Filtered random cells.");
     let (origin, at) = place::declared::<2>(b);
     let parameters = image.declare(b);
-    let seed = lattice.scrambled(b, 0xbb67_ae85);
+    let seed = content.scrambled(b, 0xbb67_ae85);
     let inner = [0, 1].map(|axis| origin[axis] + at[axis].floor().to_int());
-    let centre = image.of(lattice.in_plane(inner, seed), &parameters);
+    let centre = content.image(image, inner, seed, &parameters);
     let Some(row) = row else {
         b.results(named(&[("mean", centre.len())]), centre);
         return b.finish(module);
@@ -428,7 +458,7 @@ fn build(module: &mut Module, mode: Mode, lattice: Lattice, image: &Image) -> Fu
         centre,
         origin,
         seed,
-        fade: fading(sd),
+        fade: fading(sd, MOST),
         parameters,
     };
     let determinant = eigenvalues[0] * eigenvalues[1];

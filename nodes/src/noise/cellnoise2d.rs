@@ -1,7 +1,7 @@
 //! `cellnoise2d`: a random number in every cell.
 
 use crate::noise::cell;
-use crate::noise::cell::Lattice;
+use crate::noise::cell::{Content, Lattice};
 use crate::noise::components::{HASH, Hash};
 use crate::noise::source::{FREQUENCY, SEED, TEXCOORD, position};
 use crate::port;
@@ -59,7 +59,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
         period: lower.integer(node, "period"),
         hash: Hash::of(lower, node),
     };
-    cell::filtered(lower, &position, lattice)
+    cell::filtered(lower, &position, Content::InPlane(lattice))
 }
 
 /// Every cell has a number.

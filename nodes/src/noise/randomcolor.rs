@@ -1,13 +1,13 @@
 //! `randomcolor`: a random colour for each number.
 
 use crate::color::hsv::to_rgb;
-use crate::noise::cell::line::{Line, filtered};
-use crate::noise::cell::{lattice_seed, number};
+use crate::noise::cell::line::{Line, ROUNDING, filtered};
+use crate::noise::cell::{MOST, lattice_seed, number};
 use crate::noise::components::{HASH, Hash};
 use crate::noise::randomfloat::{IN, materialx, place};
 use crate::noise::source::SEED;
 use crate::noise::things::VARIANCE;
-use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand};
+use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Module, Operand, Scalars};
 use mipless_codegen::{Bundle, Ensemble, Lower, pairs};
 use mipless_graph::{
     Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Range,
@@ -88,7 +88,7 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let bounds = BOUNDS.map(|port| lower.number(node, port));
     let line = Line {
         key: format!("randomcolor {seed} {hash:?}"),
-        parameters: bounds.to_vec(),
+        parameters: bounds.scalars(),
         numbers: &|cell, bounds| {
             let lattice = lattice_seed(cell.builder(), seed, 0x1f83_d9ab);
             let hsv = [0, 1, 2].map(|i| {
@@ -96,11 +96,13 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
                     Hash::Mipless => number([cell, cell.literal(i as i32)], lattice, 0),
                     Hash::Materialx => materialx(cell, seed.wrapping_add(SEEDS[i])),
                 };
-                between(share, [bounds[2 * i], bounds[2 * i + 1]])
+                between(share, [2 * i, 2 * i + 1].map(|k| bounds[k].float()))
             });
             to_rgb(hsv).to_vec()
         },
         ensemble: &|lower, wanted| ensemble(lower, &bounds, wanted),
+        most: MOST,
+        rounding: ROUNDING,
     };
     let colors = filtered(lower, &place, &line);
     let known = |bound: Float<'b>| {

@@ -1,8 +1,8 @@
 //! `randomfloat`: a random number for each number.
 
 use crate::componentwise::{exposed, product, sum};
-use crate::noise::cell::line::{Line, filtered};
-use crate::noise::cell::{lattice_seed, number};
+use crate::noise::cell::line::{Line, ROUNDING, filtered};
+use crate::noise::cell::{MOST, lattice_seed, number};
 use crate::noise::components::{HASH, Hash};
 use crate::noise::jenkins;
 use crate::noise::source::SEED;
@@ -118,6 +118,8 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
             means: vec![lower.b().float(0.5)],
             covariance: vec![lower.b().float(VARIANCE)],
         },
+        most: MOST,
+        rounding: ROUNDING,
     };
     let unit = filtered(lower, &place, &line).swap_remove(0);
     let unit = unit.with_range([0.0, 1.0]);

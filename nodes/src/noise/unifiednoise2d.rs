@@ -3,7 +3,7 @@
 use crate::componentwise::{product, sum};
 use crate::coordinate::rotate2d::rotated;
 use crate::noise::affine::Affine;
-use crate::noise::cell::{self, Lattice};
+use crate::noise::cell::{self, Content, Lattice};
 use crate::noise::components::{HASH, Hash};
 use crate::noise::kernel::Kernel;
 use crate::noise::noise2d::{MATERIALX, one_octave};
@@ -191,7 +191,7 @@ fn raw<'b>(lower: &mut Lower<'_, 'b>, node: &Node, position: &[Signal<'b>]) -> S
                 hash,
             };
             let position = &turned(lower);
-            cell::filtered(lower, position, lattice).swap_remove(0)
+            cell::filtered(lower, position, Content::InPlane(lattice)).swap_remove(0)
         }
         "worley" => {
             let worley = Worley {

@@ -1,6 +1,7 @@
 //! Whole numbers beside a signal.
 
 use crate::componentwise::unary;
+use crate::noise::cell::steps::summed;
 use crate::port::any;
 use mipless_codegen::NodeDef;
 use mipless_graph::{Behaviour, Category, Doc, NodeSpec, OutputType, Range};
@@ -40,7 +41,7 @@ macro_rules! roundings {
     ""#, stringify!($node), r#"": {"type": ""#, stringify!($node), r#"", "inputs": {"in": {"node": "six"}}}
 "#) },
             };
-            NodeDef::new(&SPEC, |lower, node| unary(lower, node, "in", $rule))
+            NodeDef::new(&SPEC, |lower, node| unary(lower, node, "in", $rule)).of_steps(summed)
         }
     )*};
 }

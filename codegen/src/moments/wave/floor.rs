@@ -2,7 +2,8 @@
 
 use super::super::{Algebra, Gaussian, Moments, Signal, Transfer, position};
 use super::LinearWave;
-use crate::ir::Float;
+use crate::ir::{Float, Int};
+use std::collections::VecDeque;
 
 /// ⌊x⌋: the moments of x less those of its fraction; the distortion is the fraction's, since
 /// ⌊x⌋ − (1 − α)x = −({x} − αx). Exact for a Gaussian.
@@ -40,9 +41,32 @@ impl<'b> Transfer<'b> for Staircase {
     }
 }
 
+/// What stands for the whole parts of signals.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Wholes<'b> {
+    /// They themselves.
+    #[default]
+    Own,
+    /// They themselves; the signals are noted.
+    Noted(Vec<Signal<'b>>),
+    /// These, one after the other, whatever the signals are.
+    Given(VecDeque<Int<'b>>),
+}
+
 impl<'b> Algebra<'b> {
     /// ⌊X⌋, the integer cell of a position being whole already.
     pub fn floor(&mut self, x: &Signal<'b>) -> Signal<'b> {
+        match &mut self.wholes {
+            Wholes::Own => {}
+            Wholes::Noted(signals) => signals.push(x.clone()),
+            Wholes::Given(wholes) => {
+                let whole = wholes.pop_front().expect("a whole part for each signal");
+                return Signal {
+                    cell: Some(whole),
+                    ..Signal::certain(self.b.float(0.0)).with_range(x.range)
+                };
+            }
+        }
         let within = Signal {
             cell: None,
             ..x.clone()

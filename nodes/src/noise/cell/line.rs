@@ -3,24 +3,29 @@
 //! A cell weighs what of the Gaussian lies in it, so that means, slopes and covariances are sums over
 //! the cells of a window, as in the plane; what does not fit fades to what cells have on average.
 
-use super::{coincidence, counted, deviation, fading, report, window};
+use super::{REACH, around, coincidence, counted, deviation, fading, report};
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Scalar, Scalars};
 use mipless_codegen::moments::{Mode, Normal, Signal};
 use mipless_codegen::{Ensemble, Lower, pairs};
 
 /// The numbers of a cell of a line, from its index and the parameters.
-pub(crate) type Numbers<'a> = &'a dyn for<'c> Fn(Int<'c>, &[Float<'c>]) -> Vec<Float<'c>>;
+pub(crate) type Numbers<'a> = &'a dyn for<'c> Fn(Int<'c>, &[Scalar<'c>]) -> Vec<Float<'c>>;
 
 /// What stands in the cells of a line.
 pub(crate) struct Line<'a, 'b> {
     /// Names what the numbers depend on beyond the parameters.
     pub(crate) key: String,
     /// The numbers that shape those of the cells.
-    pub(crate) parameters: Vec<Float<'b>>,
+    pub(crate) parameters: Vec<Scalar<'b>>,
     /// The numbers of a cell.
     pub(crate) numbers: Numbers<'a>,
     /// Those of all cells, where the condition says that they are wanted.
     pub(crate) ensemble: &'a dyn Fn(&mut Lower<'_, 'b>, Bool<'b>) -> Ensemble<'b>,
+    /// How many cells are summed at most.
+    pub(crate) most: f32,
+    /// The standard deviation, in cells, of what is rounding of the place beyond its response to the
+    /// position.
+    pub(crate) rounding: f32,
 }
 
 /// Sums over the cells of a line, d being the numbers less those at the centre: the state of a fold.
@@ -159,7 +164,7 @@ pub(crate) fn filtered<'b>(
     if mode == Mode::Point || place.is_certain() {
         return centre.into_iter().map(Signal::certain).collect();
     }
-    let place = &sound(place);
+    let place = &sound(place, line.rounding);
     let variance = place.variance().min(WIDEST * WIDEST);
     let [sd, inverse] = deviation(variance);
     report(lower, sd);
@@ -167,8 +172,8 @@ pub(crate) fn filtered<'b>(
     // The sums over the window.
     let key = format!("cells of a line {}", line.key);
     let body = lower.function(&key, |module| one_more(module, channels, line));
-    let [start, count] = window(x, sd);
-    let fade = fading(sd);
+    let [start, count] = around(x, sd * REACH, line.most);
+    let fade = fading(sd, line.most);
     let before = Sums::start([start - x, inverse], channels);
     let captures = (start, x, inverse, cell, &centre, &line.parameters);
     let sums = b.fold(&body, counted(count, fade), before, captures);
@@ -221,18 +226,18 @@ pub(crate) fn filtered<'b>(
 /// Positions spread over more than this are spread over it.
 const WIDEST: f32 = 1.0e4;
 
-/// The standard deviation, in cells, of what is rounding beyond the response to the position: patterns
-/// that are within 1e-6 of their number have a remainder of 3e-4, which are steps of 1/4096.
-const ROUNDING: f32 = 2.0;
+/// The rounding of steps of 1/4096: patterns that are within 1e-6 of their number have a remainder of
+/// 3e-4.
+pub(crate) const ROUNDING: f32 = 2.0;
 
 /// The place without its roundings.
-fn sound<'b>(place: &Signal<'b>) -> Signal<'b> {
+fn sound<'b>(place: &Signal<'b>, rounding: f32) -> Signal<'b> {
     let other = place.other_variance();
-    if other.is_zero() {
+    if other.is_zero() || rounding == 0.0 {
         return place.clone();
     }
-    const LEAST: f32 = ROUNDING * ROUNDING;
-    let share = (other - LEAST).max(0.0) / other.max(LEAST);
+    let least = rounding * rounding;
+    let share = (other - least).max(0.0) / other.max(least);
     let root = share.sqrt();
     let mut out = place.clone();
     out.h = out.h * root;
@@ -272,7 +277,9 @@ fn one_more(module: &mut Module, channels: usize, line: &Line<'_, '_>) -> Functi
             .collect()
     };
     let centre = floats("centre", channels);
-    let parameters = floats("parameter", line.parameters.len());
+    let declared =
+        |(i, of): (usize, &Scalar<'_>)| b.scalar_param(format!("parameter_{i}"), of.ty());
+    let parameters: Vec<Scalar<'_>> = line.parameters.iter().enumerate().map(declared).collect();
     let place = start + index.to_float();
     let numbers = (line.numbers)(cell + place.to_int(), &parameters);
     let d: Vec<Float<'_>> = (numbers.iter().zip(&centre))

@@ -6,8 +6,8 @@
 use super::passed::{Passed, passed};
 use super::place::declared;
 use super::{
-    Cells, Lattice, NARROWEST, Plane, Slice, coincidence, counted, deviation, fading, inside,
-    report, row, window,
+    Cells, Content, Lattice, MOST, NARROWEST, Plane, Slice, coincidence, counted, deviation,
+    fading, inside, report, row, window,
 };
 use crate::noise::components::Hash;
 use crate::noise::period::wrapped;
@@ -50,7 +50,7 @@ pub(crate) fn filtered<'b>(
     let captures = mode.filters().then_some(spread);
     let [xx, _, _, yy, _, zz] = *spread.covariance;
     let widest = xx.max(yy).max(zz);
-    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0]).lt(1.0));
+    let ensemble = ensemble(lower, &image, || fading(deviation(widest)[0], MOST).lt(1.0));
     let sums = b.call(&function, (places, parameters, ensemble, captures));
     let (fields, rest) = sums.split_at(sums.len().min(4 * image.channels()));
     let mut signals: Vec<Signal<'b>> = (fields.chunks(4))
@@ -131,7 +131,7 @@ impl<'b> Scalars<'b> for LayerSums<'b> {
 
 /// One layer of cells, the body of a fold.
 fn layer(module: &mut Module, lattice: Lattice, image: &Image) -> FunctionRef {
-    let row = row(module, lattice, true, image);
+    let row = row(module, Content::InLayer(lattice), image);
     let b = &Builder::new("cell_layer", "One layer of cells.");
     let index = b.uint_param("index");
     let count = image.channels();
@@ -225,7 +225,7 @@ fn build(module: &mut Module, mode: Mode, lattice: Lattice, image: &Image) -> Fu
     ];
     let [s_xx, s_xy, s_yy, determinant] =
         minors.map(|(minor, own)| (minor + own * NARROWEST) * precision);
-    let fade = fading(xx.max(yy).max(raised).sqrt());
+    let fade = fading(xx.max(yy).max(raised).sqrt(), MOST);
     let [start, layers_in_window] = window(z, sd_z);
     let layers = Layers { start, x, y, z };
     let of_layers = LayersCells {
