@@ -340,10 +340,10 @@ fn decide(
         let components: Vec<_> = (live.iter())
             .map(|&(output, _)| truth.components(output))
             .collect();
-        let helps = change.helps(graph, largest, &components);
-        for ((_, node), helps) in live.into_iter().zip(helps) {
-            if !helps {
-                facts.drawn.remove(&node);
+        let near = change.near(graph, largest, &components);
+        for ((_, node), near) in live.into_iter().zip(near) {
+            if let Some(drawn) = facts.drawn.get_mut(&node) {
+                drawn.near = near;
             }
         }
     }

@@ -5,8 +5,9 @@
 //! be biased there. A filtered value C is drawn to F by the share l that brings it nearest to the
 //! true mean T of a pixel: l = Σ (F − C)(T − C) / Σ (F − C)² over places, as [`super::audit`]
 //! measures it for each band of footprints. Where inputs of the graph shape the texture, F moves
-//! with them, and F/C at their defaults times C takes its place, within the range of the signal. For
-//! points inside the footprint 1 − l is Wiener's share V/(V + N/7), with V the variance of T over
+//! with them, and F/C at their defaults times C takes its place, within the range of the signal; where
+//! that is not right at the ends of an input's slider, the share falls to 0 as the input leaves its
+//! default. For points inside the footprint 1 − l is Wiener's share V/(V + N/7), with V the variance of T over
 //! places and N that of points within a footprint.
 
 use super::bands::Bands;
@@ -38,6 +39,17 @@ impl Far {
     }
 }
 
+/// A number among the inputs of the graph near whose default alone signals are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Near {
+    /// Which.
+    pub(super) scalar: usize,
+    /// The default.
+    pub(super) default: f32,
+    /// How far from it nothing is drawn any more.
+    pub(super) reach: f32,
+}
+
 /// The mean of a texture, and how far signals are drawn there.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Drawn {
@@ -47,6 +59,8 @@ pub(super) struct Drawn {
     pub(super) lost: [f32; Bands::COUNT],
     /// The bands.
     pub(super) bands: Bands,
+    /// Near what alone.
+    pub(super) near: Vec<Near>,
 }
 
 impl Drawn {
@@ -91,7 +105,11 @@ impl<'b> Lower<'_, 'b> {
             && !self.measures
             && !self.in_rule;
         let drawn = compiler.facts.drawn.get(&index).filter(|_| applies)?;
-        let lost = drawn.lost(drawn.bands.of(&self.arguments));
+        let mut lost = drawn.lost(drawn.bands.of(&self.arguments));
+        for near in &drawn.near {
+            let away = self.arguments.parameters[near.scalar].float() + -near.default;
+            lost *= (1.0 - away.abs() * (1.0 / near.reach)).max(0.0);
+        }
         let each = signals.iter().enumerate().map(|(i, signal)| {
             let flat = signal.flat();
             let mean = drawn.draw(i, flat.mean, lost);

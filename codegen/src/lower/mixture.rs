@@ -176,7 +176,7 @@ pub(super) fn found(
         }
     }
     let mut ends: FxHashMap<usize, Vec<usize>> = FxHashMap::default();
-    let mut stepped: Vec<(&[usize], Vec<usize>)> = Vec::new();
+    let mut stepped: Vec<usize> = Vec::new();
     for (index, origin) in origins.iter().enumerate() {
         if !is_read[index] || facts.live[index] == 0 {
             continue;
@@ -185,22 +185,15 @@ pub(super) fn found(
             Origin::Things(source) if *source != index => {
                 ends.entry(*source).or_default().push(index);
             }
-            Origin::Steps(of) if !of.contains(&index) => {
-                match stepped.iter_mut().find(|(known, _)| known == &&of[..]) {
-                    Some((_, ends)) => ends.push(index),
-                    None => stepped.push((of, vec![index])),
-                }
-            }
+            Origin::Steps(_) => stepped.push(index),
             _ => {}
         }
     }
     let compiler = Compiler::new((graph, facts), catalogue, options);
-    for (roundings, ends) in stepped {
-        if let Some(steps) = Steps::found(&compiler, &origins, roundings, ends) {
-            let place = mixtures.steps.len();
-            (mixtures.stepped).extend(steps.ends.iter().map(|&end| (end, place)));
-            mixtures.steps.push(steps);
-        }
+    for steps in steps::found(&compiler, &origins, stepped) {
+        let place = mixtures.steps.len();
+        (mixtures.stepped).extend(steps.ends.iter().map(|&end| (end, place)));
+        mixtures.steps.push(steps);
     }
     for (source, mut of_source) in ends {
         curved(&compiler, source, &mut of_source);

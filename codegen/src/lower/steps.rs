@@ -21,7 +21,7 @@ use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{FunctionRef, Int, Module, Uint, Value};
 use crate::moments::{Algebra, Mode, Signal, Symbol, Wholes};
 use mipless_graph::{NodeId, Source};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 
 /// The most nodes that take whole parts of which one function depends.
@@ -45,6 +45,49 @@ const NOTHING: f64 = 0.002;
 static KNOWN: LazyLock<RwLock<FxHashMap<Shape, Arc<Sampled>>>> = LazyLock::new(RwLock::default);
 const MOST_KNOWN: usize = 1024;
 
+/// The most nodes that are tried.
+const MOST_TRIED: usize = 64;
+
+/// The functions of whole parts among nodes: where one is not alike everywhere, what it is made of may
+/// be.
+pub(super) fn found(
+    compiler: &Compiler<'_>,
+    origins: &[Origin],
+    mut nodes: Vec<usize>,
+) -> Vec<Steps> {
+    let mut all: Vec<Steps> = Vec::new();
+    let mut seen: FxHashSet<usize> = nodes.iter().copied().collect();
+    while !nodes.is_empty() && seen.len() <= MOST_TRIED {
+        let mut sets: Vec<(&[usize], Vec<usize>)> = Vec::new();
+        for node in nodes {
+            let Origin::Steps(of) = &origins[node] else {
+                continue;
+            };
+            match sets.iter_mut().find(|(known, _)| known == &&of[..]) {
+                _ if of.contains(&node) => {}
+                Some((_, ends)) => ends.push(node),
+                None => sets.push((of, vec![node])),
+            }
+        }
+        nodes = Vec::new();
+        for (roundings, ends) in sets {
+            let steps = Steps::of(compiler, origins, roundings, &ends);
+            let is_found = |end: &usize| steps.as_ref().is_some_and(|s| s.ends.contains(end));
+            for end in ends.iter().filter(|end| !is_found(end)) {
+                for input in &compiler.graph.nodes[*end].inputs {
+                    if let Source::Node(id) = input.source
+                        && seen.insert(id.index())
+                    {
+                        nodes.push(id.index());
+                    }
+                }
+            }
+            all.extend(steps);
+        }
+    }
+    all
+}
+
 /// Nodes that are functions of the same whole parts.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
@@ -62,11 +105,11 @@ pub(super) struct Steps {
 impl Steps {
     /// Those of some nodes that are functions of whole parts of one coordinate or two, and alike
     /// everywhere.
-    pub(super) fn found(
+    fn of(
         compiler: &Compiler<'_>,
         origins: &[Origin],
         roundings: &[usize],
-        ends: Vec<usize>,
+        ends: &[usize],
     ) -> Option<Self> {
         let graph = compiler.graph;
         let inputs = roundings.iter().flat_map(|&node| &graph.nodes[node].inputs);
@@ -88,14 +131,14 @@ impl Steps {
             entries,
             sum: compiler.catalogue[graph.nodes[roundings[0]].definition].steps?,
         };
-        if steps.region(compiler, &ends).len() > LONGEST {
+        if steps.region(compiler, ends).len() > LONGEST {
             return None;
         }
         // Which whole parts are read, and of which coordinates they are.
-        let read = steps.read(compiler, &ends);
+        let read = steps.read(compiler, ends);
         steps.axes = axes(compiler, &steps, &read)?;
         let mut components = 0;
-        for end in ends {
+        for &end in ends {
             let of_end = graph.nodes[end].ty.components();
             if components + of_end < COMPONENTS && steps.sampled(compiler, &[end]).is_alike() {
                 components += of_end;

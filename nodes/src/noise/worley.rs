@@ -6,12 +6,13 @@
 //! noise by the regression of the true average on it, whose slope was measured by size (`shape`).
 //!
 //! What follows the numbers of regions is summed over the regions along lines through the footprint
-//! instead (`lines`).
+//! instead (`lines`), and over their points where it holds many (`wide`).
 
 mod lines;
 mod shape;
 pub(crate) mod space;
 mod taps;
+mod wide;
 
 pub(crate) use shape::{Output, Worley};
 
@@ -21,7 +22,7 @@ use super::components::Hash;
 use super::field::Spread;
 use super::jenkins;
 use mipless_codegen::Lower;
-use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Vec2};
+use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
 use taps::{Kept, NODES, Nearest, Rows, row};
 
@@ -77,13 +78,18 @@ fn search<'b>(
         columns,
         cell_x,
         cell_y,
-        seed: match worley.hash {
-            Hash::Mipless => lattice_seed(b, worley.seed, 0xa54f_f53a),
-            Hash::Materialx => b.uint(jenkins::seed(worley.seed)),
-        },
+        seed: seed(b, worley),
     };
     let before = vec![Nearest::none(b, kept); places.len()];
     b.fold(row, any.select(rows, 0u32), before, (shared, places))
+}
+
+/// What all cells share.
+fn seed(b: &Builder, worley: Worley) -> Uint<'_> {
+    match worley.hash {
+        Hash::Mipless => lattice_seed(b, worley.seed, 0xa54f_f53a),
+        Hash::Materialx => b.uint(jenkins::seed(worley.seed)),
+    }
 }
 
 fn build(module: &mut Module, mode: Mode, worley: Worley) -> FunctionRef {

@@ -282,6 +282,7 @@ impl Truth {
             far,
             lost,
             bands: self.bands,
+            near: Vec::new(),
         }
     }
 }
@@ -310,7 +311,7 @@ fn stepped(share: f64) -> f32 {
 
 /// The mean over the two largest sizes of footprints.
 fn mean_of_largest(values: &[f32]) -> f64 {
-    let largest = &values[values.len() - LARGEST..];
+    let largest = &values[values.len().saturating_sub(LARGEST)..];
     largest.iter().map(|&x| f64::from(x)).sum::<f64>() / largest.len() as f64
 }
 

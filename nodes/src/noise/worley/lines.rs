@@ -5,8 +5,8 @@
 //! linear function is 0. A region weighs what of the Gaussian along the line lies between its borders;
 //! what is missed are regions between two taps. The lines lie across the nearest border where the footprint
 //! is small, so that one border alone is exact, and across the longer axis where it is not; their number
-//! follows the size of the footprint. Where that would be too many, the sum fades to the mean of all
-//! numbers.
+//! follows the size of the footprint. Where that would be too many, the regions are summed by their
+//! points ([`super::wide`]), and where these are, the sum fades to the mean of all numbers.
 //!
 //! Measured on random colours, root mean square as a display shows them: 0.005 at a standard deviation
 //! of 0.015 cells, 0.008 at 0.2 and 0.4 and 0.012 at 0.75 (a rule of seven points: 0.013, 0.041, 0.051,
@@ -14,7 +14,7 @@
 
 use super::shape::Worley;
 use super::taps::{Kept, row};
-use super::{WIDEST, search};
+use super::{search, seed, wide};
 use crate::noise::cell::coincidence;
 use crate::noise::cell::place::{called, declared, declared_spread, field};
 use crate::noise::field::Spread;
@@ -48,7 +48,7 @@ pub(super) fn filtered<'b>(
     let key = format!("worley {mode:?} {worley:?} {}", image.key());
     let function = lower.function(&key, |module| build(module, mode, worley, &image));
     let [xx, _, yy] = *spread.covariance;
-    let ensemble = ensemble(lower, &image, || fading(xx, yy).lt(1.0));
+    let ensemble = ensemble(lower, &image, || wide::fading(xx.max(yy).sqrt()).lt(1.0));
     let results = called(lower, &function, (position, spread), (parameters, ensemble));
     let (fields, rest) = results.split_at(3 * image.channels());
     let mut signals: Vec<Signal<'b>> = (fields.chunks(3))
@@ -58,11 +58,12 @@ pub(super) fn filtered<'b>(
     signals
 }
 
-/// 1, falling to 0 as a footprint of these variances becomes too wide.
-fn fading<'b>(xx: Float<'b>, yy: Float<'b>) -> Float<'b> {
-    let farthest = xx.max(yy).sqrt();
-    let fade = (farthest + -WIDEST[1]) * (-1.0 / (WIDEST[1] - WIDEST[0]));
-    fade.clamp(0.0, 1.0)
+/// The standard deviations along an axis, in cells, between which points take the place of lines.
+const WIDEST: [f32; 2] = [1.1, 1.3];
+
+/// 1, falling to 0 as a footprint of this standard deviation along an axis becomes too wide for lines.
+fn by_lines(sd: Float<'_>) -> Float<'_> {
+    ((sd + -WIDEST[1]) * (-1.0 / (WIDEST[1] - WIDEST[0]))).clamp(0.0, 1.0)
 }
 
 /// A vector of length 1, or 0 of next to nothing.
@@ -79,6 +80,7 @@ fn build(module: &mut Module, mode: Mode, worley: Worley, image: &Image) -> Func
     };
     let nearest = row(module, worley, kept, 1);
     let line = line(module, worley, image);
+    let row_of_regions = wide::row(module, worley, image);
     let b = &Builder::new(
         "worley_regions",
         "Regions of random points over a footprint.",
@@ -98,7 +100,8 @@ fn build(module: &mut Module, mode: Mode, worley: Worley, image: &Image) -> Func
     let l11 = s_xx.max(floor.square()).sqrt();
     let l21 = s_xy / l11.max(1e-12);
     let l22 = (s_yy - l21.square()).max(0.0).sqrt().max(floor);
-    let fade = fading(s_xx, s_yy);
+    let farthest = s_xx.max(s_yy).sqrt();
+    let (near, fade) = (by_lines(farthest), wide::fading(farthest));
 
     // The centre, and its nearest border.
     let place = Vec2(centre.1);
@@ -127,7 +130,7 @@ fn build(module: &mut Module, mode: Mode, worley: Worley, image: &Image) -> Func
     ]);
 
     let lines = (major * MORE + FEWEST).ceil().clamp(1.0, MOST);
-    let count = fade.le(0.0).select(0u32, lines.to_int().to_uint());
+    let count = near.le(0.0).select(0u32, lines.to_int().to_uint());
     let channels = image.channels();
     let before = Sums::zero(b, channels);
     let root = [l11, l21, l22];
@@ -135,7 +138,7 @@ fn build(module: &mut Module, mode: Mode, worley: Worley, image: &Image) -> Func
     let at = [(cell_x, x), (cell_y, y)];
     let captures = (at, root, across, lines, &at_centre, &parameters);
     let sums = b.fold(&line, count, before, captures);
-    let scale = 1.0 / sums.weight.max(1e-6);
+    let scale = near / sums.weight.max(1e-6);
 
     // Lᵀ∇ = c, of c along the lines and across them.
     let slopes: Vec<Vec2<'_>> = (sums.slope_x.iter().zip(&sums.slope_y))
@@ -147,12 +150,29 @@ fn build(module: &mut Module, mode: Mode, worley: Worley, image: &Image) -> Func
             Vec2([dx, dy])
         })
         .collect();
+
+    // And over points.
+    let is_asked = near.lt(1.0) & fade.gt(0.0);
+    let image_of = (&at_centre[..], &parameters[..]);
+    let seed = seed(b, worley);
+    let far = wide::summed(
+        &row_of_regions,
+        centre,
+        covariance,
+        seed,
+        image_of,
+        is_asked,
+    );
+    let far_scale = (1.0 - near) / far.weight.max(1e-6);
+    let slopes: Vec<Vec2<'_>> = (slopes.into_iter().zip(far.slope_x.iter().zip(&far.slope_y)))
+        .map(|(slope, (&x, &y))| slope + Vec2([x, y]) * far_scale)
+        .collect();
     let linear = pairs(channels).map(|(i, k)| slopes[i].dot(covariance.times(slopes[k])));
     let [same_along, same_across] = [eigenvalues[0], eigenvalues[1]].map(coincidence);
     let filtered = Filtered {
         centre: at_centre,
-        first: sums.first.iter().map(|&sum| sum * scale).collect(),
-        second: sums.second.iter().map(|&sum| sum * scale).collect(),
+        first: weighted(scaled(sums.first, scale), far_scale, &far.first),
+        second: weighted(scaled(sums.second, scale), far_scale, &far.second),
         linear: linear.collect(),
         slopes: slopes.iter().map(|slopes| slopes.to_vec()).collect(),
         fade,
@@ -160,6 +180,11 @@ fn build(module: &mut Module, mode: Mode, worley: Worley, image: &Image) -> Func
     };
     filtered.results(b, mode, ensemble.as_ref());
     b.finish(module)
+}
+
+/// Each sum times a number.
+fn scaled<'b>(sums: Vec<Float<'b>>, by: Float<'b>) -> Vec<Float<'b>> {
+    sums.into_iter().map(|sum| sum * by).collect()
 }
 
 /// L z.

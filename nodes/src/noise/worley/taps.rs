@@ -219,7 +219,7 @@ passed! {
 }
 
 /// Where in its cell a point lies before the jitter, and its number.
-fn random<'b>(
+pub(super) fn random<'b>(
     worley: Worley,
     [column, row]: [Int<'b>; 2],
     seed: Uint<'b>,

@@ -1,10 +1,10 @@
-//! Random bricks under long footprints: bricks are taken apart into tiles of half a brick by a row, and
-//! these into as many parts as the footprint's width asks for. The share of a footprint that a part holds
+//! Random bricks under long footprints and wide ones: bricks are taken apart into tiles of a brick, or half
+//! of one, by a row, and these into as many parts as the footprint's width asks for. The share of a footprint that a part holds
 //! is the density of a Gaussian at its centre, of the footprint's covariance and the part's own. The
 //! fourth cumulant of a part that this leaves out is 4 % of the density's peak at most, and the shares are
 //! made to sum to 1.
 
-use super::super::bond::Bond;
+use super::super::bond::{Bond, Brick};
 use super::super::taps::Taps;
 use super::{
     ALONE, BRICK, Summed, declared, declared_cells, faded, offset_parameter, row_hash, sums, within,
@@ -16,26 +16,37 @@ use mipless_codegen::{Image, pairs};
 /// deviations.
 const NARROWEST: f32 = 0.6;
 
-/// The most parts of a tile along a coordinate.
+/// The most parts of half a brick along a coordinate.
 const MOST_PARTS: f32 = 4.0;
 
-/// How many parts of each tile cost as much as a node of the integral over what the coordinates share.
+/// How many parts of each half brick cost as much as a node of the integral over what the coordinates
+/// share.
 const PARTS_A_NODE: f32 = 0.5;
 
 /// How far a footprint and a tile reach together, in standard deviations.
 const REACH: f32 = 3.3;
 
-/// A tile, in bricks and rows.
-const TILE: [f32; 2] = [0.5, 1.0];
+/// A tile, in bricks and rows: half a brick where some bricks are not made of whole ones.
+fn size(bond: Bond) -> [f32; 2] {
+    let whole = |brick: &Brick| brick.size[0].fract() == 0.0;
+    [
+        if bond.bricks().iter().all(whole) {
+            1.0
+        } else {
+            0.5
+        },
+        1.0,
+    ]
+}
 
 /// Half of a tile, in unit cells.
 fn half(bond: Bond) -> [f32; 2] {
-    [0, 1].map(|k| 0.5 * TILE[k] / bond.cell()[k])
+    [0, 1].map(|k| 0.5 * size(bond)[k] / bond.cell()[k])
 }
 
 /// Standard deviations along a coordinate, in unit cells: above the first the sum fades, at the second it
 /// has faded, since no more copies are summed.
-const LONGEST: [f32; 2] = [1.8, 2.4];
+const LONGEST: [f32; 2] = [3.6, 4.8];
 
 /// Into how many parts tiles are taken apart along each coordinate, and whether to sum them: where that
 /// costs less than the nodes, or where these fade.
@@ -52,8 +63,10 @@ pub(super) fn parts<'b>(
         let needed = (other / area).sqrt() * (NARROWEST * half);
         needed.ceil().max(1.0)
     });
-    let few = counts[0].le(MOST_PARTS) & counts[1].le(MOST_PARTS);
-    let mut better = (counts[0] * counts[1]).le(taps.count.to_float() * PARTS_A_NODE);
+    // Half bricks along a tile.
+    let halves = 2.0 * size(bond)[0];
+    let few = counts[0].le(MOST_PARTS * halves) & counts[1].le(MOST_PARTS);
+    let mut better = (counts[0] * counts[1]).le(taps.count.to_float() * (PARTS_A_NODE * halves));
     for sd in taps.nodes.sd {
         better = better | sd.gt(ALONE[0]);
     }
@@ -103,15 +116,15 @@ pub(super) fn function(
 
 /// The centres of the tiles in unit cells, the number of the brick, and whether it is shifted.
 fn tiles(bond: Bond) -> Vec<[f32; 4]> {
-    let cell = bond.cell();
+    let (cell, tile) = (bond.cell(), size(bond));
     let mut tiles = Vec::new();
     for (i, brick) in bond.bricks().iter().enumerate() {
-        let counts = [0, 1].map(|k| (brick.size[k] / TILE[k]).round() as u32);
+        let counts = [0, 1].map(|k| (brick.size[k] / tile[k]).round() as u32);
         for row in 0..counts[1] {
             for column in 0..counts[0] {
                 let [x, y] = [(0, column), (1, row)].map(|(k, at)| {
                     let from = brick.centre[k] - 0.5 * brick.size[k];
-                    (from + TILE[k] * (at as f32 + 0.5)) / cell[k]
+                    (from + tile[k] * (at as f32 + 0.5)) / cell[k]
                 });
                 let shift = if brick.shifted { 1.0 / cell[0] } else { 0.0 };
                 tiles.push([x, y, i as f32, shift]);
