@@ -305,6 +305,8 @@ pub struct Lower<'g, 'b> {
     only_measured: Vec<bool>,
     /// Whether the node at work is one.
     is_only_measured: bool,
+    /// The node whose closed form is wanted, whatever the audit has found of it.
+    closes: Option<usize>,
     /// Whether a rule is being built, whose functions are the library's.
     in_rule: bool,
     /// Whether something that is not linear follows a source.
@@ -352,6 +354,7 @@ impl<'g, 'b> Lower<'g, 'b> {
             measures: false,
             only_measured: Vec::new(),
             is_only_measured: false,
+            closes: None,
             in_rule: false,
             nonlinear: false,
             reads_elsewhere: false,
@@ -463,7 +466,9 @@ impl<'g, 'b> Lower<'g, 'b> {
                     }
                 }
             }
-            if let Some(other) = self.instead(index, &bundle) {
+            if self.closes != Some(index)
+                && let Some(other) = self.instead(index, &bundle)
+            {
                 bundle = other;
                 self.chains[index] = None;
                 self.pairs[index] = None;

@@ -6,6 +6,10 @@
 //! hexagon turns from pixel to pixel, which makes noise of what would be a moiré. Mean, linear
 //! response and the rest of the variance of the points are the node's signal.
 //!
+//! An output is closed in the other bands alone: in a function of its own, which is called where it is
+//! read. What follows a node that is no output reads what it has in common with other nodes, so that it
+//! stays where it is.
+//!
 //! Where a footprint holds so much of the texture that its true mean hardly varies from place to
 //! place, seven points say less than the mean of the texture itself: they are drawn to it
 //! ([`super::drawn`]).
@@ -14,8 +18,8 @@ use super::bands::Bands;
 use super::drawn::Drawn;
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::float::Float as _;
-use crate::ir::{Builder, Float, FunctionRef, Module, Vec2};
-use crate::moments::{Algebra, Mode, Signal};
+use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Vec2};
+use crate::moments::{Algebra, Mode, PARTS, Signal};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// How many points there are.
@@ -61,6 +65,10 @@ impl<'g, 'b> Lower<'g, 'b> {
         let band = sampling.drawn.bands.of(&place);
         let within = Bands::within(band, sampling.within);
         let everywhere = within.as_constant() == Some(true);
+        let closed = &match compiler.facts.live[index] == 1 && compiler.is_output(index) {
+            true if !everywhere => self.closed_elsewhere(index, closed, within),
+            _ => closed.to_vec(),
+        };
 
         let turn = place.footprint.hashed(0x51ed_270b);
         let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
@@ -91,6 +99,71 @@ impl<'g, 'b> Lower<'g, 'b> {
             })
             .collect()
     }
+}
+
+impl<'a> Compiler<'a> {
+    /// Whether a node is an output.
+    fn is_output(&self, index: usize) -> bool {
+        let mut outputs = self.graph.outputs.iter();
+        outputs.any(|output| output.node.index() == index)
+    }
+}
+
+impl<'b> Lower<'_, 'b> {
+    /// The closed form of a node, where the condition does not hold: nothing is evaluated elsewhere.
+    fn closed_elsewhere(
+        &mut self,
+        index: usize,
+        closed: &[Signal<'b>],
+        unless: Bool<'b>,
+    ) -> Bundle<'b> {
+        let (compiler, mode) = (self.compiler, self.algebra.mode);
+        let function = self.function(&format!("closed {index} {mode:?}"), |module| {
+            closed_function(compiler, module, (index, mode))
+        });
+        let b = self.b();
+        let none = vec![b.float(0.0); PARTS * closed.len()];
+        let turns = unless.select(0u32, 1u32);
+        let parts = b.fold(&function, turns, none, self.arguments.clone());
+        let signals = parts.as_chunks().0.iter().zip(closed);
+        signals
+            .map(|(&parts, closed)| Signal::of_parts(parts).with_range(closed.range))
+            .collect()
+    }
+}
+
+/// The closed form of a node, as the body of a fold of one turn at most.
+fn closed_function(
+    compiler: &Compiler<'_>,
+    module: &mut Module,
+    (index, mode): (usize, Mode),
+) -> FunctionRef {
+    let graph = compiler.graph;
+    let node = &graph.nodes[index];
+    let name = super::identifier(&node.name);
+    let doc = "A part of the texture in closed form.";
+    let b = &compiler.builder(format!("{name}_closed"), doc);
+    b.uint_param("index");
+    let names: Vec<String> = (0..PARTS * node.ty.components())
+        .map(|i| format!("part_{i}"))
+        .collect();
+    for name in &names {
+        b.float_param(name);
+    }
+    let arguments = Arguments::declare(b, graph);
+    let mut lower = Lower::with(compiler, module, Algebra::new(b, mode), arguments);
+    lower.closes = Some(index);
+    let bundle = lower.run_alone(index);
+    let parts = bundle.iter().flat_map(|signal| {
+        let mut flat = signal.flat();
+        let symbols: Vec<_> = flat.shared.iter().map(|&(symbol, _)| symbol).collect();
+        for symbol in symbols {
+            flat.retire(symbol);
+        }
+        flat.parts()
+    });
+    b.results(names, parts);
+    b.finish(module)
 }
 
 /// What is summed over the points for one component: the value at the centre, and of the values'

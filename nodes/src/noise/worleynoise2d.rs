@@ -32,13 +32,16 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             a footprint the values at seven places (a rule of degree 5) give mean, gradient and \
             variance; their mean is drawn towards that of the plane, and their variance towards the \
             average that a footprint of this size removes, by slopes that were measured by size. \
-            Beyond 1.5 cells only the statistics of the plane are left.",
+            Beyond 1.5 cells only the statistics of the plane are left. Functions of the numbers of solid regions are \
+            summed over the regions along lines through the footprint, and beyond 1.1 to 1.3 cells over their \
+            points, weighted by the density there; they fade to the mean over all numbers from 3 to 4 cells.",
         accuracy: "The filtered mean is within 0.01, 0.03, 0.07, 0.21 and 0.15 standard deviations of \
             the noise (F1, root mean square) at footprints of 0.05, 0.1, 0.2, 0.4 and 0.8 cells, 0.02 to \
             0.23 for F2 − F1, 0.07 to 0.22 for solid regions, and 0.26 to 0.3 at 8:1 where the axes are \
             0.15 and 1.2 cells. The local standard deviation is within 0.03 to 0.1 of the true one (F1) \
-            and 0.1 to 0.35 (solid). Slopes are those of a jitter of 1. Held by \
-            `nodes/tests/sources.rs`; all sizes in `tests/benches/sources.rs`.",
+            and 0.1 to 0.35 (solid). Slopes are those of a jitter of 1. Random colours of \
+            regions are within 0.012 as a display shows them under pixels of up to 6 cells: \
+            `tests/tests/field.rs`. Held by `nodes/tests/sources.rs`; all sizes in `tests/benches/sources.rs`.",
         references: "Worley 1996, *A cellular texture basis function*; MaterialX 1.39 specification, \
             node `worleynoise2d`; Stroud 1971, *Approximate Calculation of Multiple Integrals*, \
             E₂^{r²} 5-1.",

@@ -38,12 +38,12 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             square, whose ramps are exact for their edges and approximate in waves. Random numbers are \
             weighted by the share of the footprint that each brick holds: a product of two shares near by, \
             the density of a Gaussian at each part of a brick under long footprints. They fade to their mean, 1/2, \
-            where the footprint covers many bricks: from 2.5 bricks of √det Σ, or where it is much longer than a unit \
+            where the footprint covers many bricks: from 8.5 bricks of √det Σ, or where it is much longer than a unit \
             cell and thin. Of varying parameters the means are used.",
         accuracy: "The mean is within 1e-3 for footprints along the axes and within 2e-3 for rotated \
             ones up to 10:1; longer ones are blurred across to 10:1 while they are narrow. Random numbers are \
             within 1e-3 under round footprints and 0.01 under rotated ones of 8:1 until they fade, and then \
-            within 0.056. With a bevel the standard \
+            within 0.035. With a bevel the standard \
             deviation is within 0.03. Held by `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
             Mehler 1866. Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. Names of \

@@ -14,7 +14,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         computes: "out = ⌊in · steps⌋ / steps, for each component.",
         statistics: "⌊x⌋ is x less its fraction, whose moments are those of `fract`: E[⌊x⌋] = m − E[fract \
             x], slope 1 − α, the same distortion. Exact for a Gaussian, and a position keeps its \
-            integer cell. Of varying steps the mean is used.",
+            integer cell. Of varying steps the mean is used. What follows the steps of a coordinate is summed \
+            step by step, as after `floor`.",
         accuracy: "For a Gaussian input the mean is within 4e-6, the remainder’s standard deviation \
             within 1e-3 of 1 + σ. Held by `codegen/src/moments/tests/waves.rs` against dense \
             numerical integration in f64.",

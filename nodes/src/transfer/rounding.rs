@@ -23,11 +23,16 @@ macro_rules! roundings {
                     computes: $computes,
                     statistics: "⌊x⌋ is x less its fraction, whose moments are those of `fract`: \
                         E[⌊x⌋] = m − E[fract x], slope 1 − α, the same distortion. Exact for a \
-                        Gaussian, and a position keeps its integer cell.",
+                        Gaussian, and a position keeps its integer cell. What follows the whole \
+                        parts of one coordinate or two, and is alike everywhere (random numbers, \
+                        hashes, conditions), is evaluated for each step in the footprint and summed \
+                        with what of the Gaussian lies in it; beyond 6 to 8 steps of one coordinate, 3 to 4 of two \
+                        (standard deviations), it fades to the mean over all.",
                     accuracy: "For a Gaussian input the mean is within 4e-6, the remainder’s standard \
                         deviation within 1e-3 of 1 + σ. Held by \
                         `codegen/src/moments/tests/waves.rs` against dense numerical integration in \
-                        f64.",
+                        f64. Random colours of steps are within 0.003 as a display shows them, from \
+                        pixels of 0.005 to 1 uv at 5 and 6 steps a uv: `tests/tests/field.rs`.",
                     references: cite!(characteristic, bussgang; stringify!($node)),
                 },
                 inputs: &[any("in", 0.0, "The signal.").range(Range::soft(-4.0, 4.0))],

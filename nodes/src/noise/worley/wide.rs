@@ -20,7 +20,7 @@ const REGION: f32 = 0.08;
 const REACH: f32 = 3.0;
 
 /// The most rows or columns.
-const MOST: f32 = 32.0;
+const MOST: f32 = 26.0;
 
 /// 1, falling to 0 as a footprint of this standard deviation along an axis fills the largest window.
 pub(super) fn fading(sd: Float<'_>) -> Float<'_> {
