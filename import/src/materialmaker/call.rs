@@ -14,7 +14,7 @@ pub(super) struct NodeCall<'m, 'a> {
     pub(super) maker: &'m mut Maker<'a>,
     pub(super) port: &'m PortOf,
     pub(super) kind: &'m str,
-    pub(super) signature: Option<&'static Signature>,
+    pub(super) signature: Option<&'m Signature>,
     pub(super) uv: Value,
     pub(super) hint: String,
     pub(super) place: Place,

@@ -98,7 +98,7 @@ impl<'a> Graphs<'a> {
         Some((name, place))
     }
 
-    fn node(&self, graph: usize, name: &str) -> Option<&'a Json> {
+    pub(super) fn node(&self, graph: usize, name: &str) -> Option<&'a Json> {
         self.0.get(graph)?.nodes.get(name).copied()
     }
 
