@@ -15,6 +15,7 @@
 //! | `ramp(e)` | the node's stops at `e`, by its interpolation |
 //! | `sin(e)`, `cos(e)`, `pow(a, b)` | worked out where they are literals |
 //! | `seed(e)`, `period(x, y, #)` | the node's own random numbers; after how many cells they repeat |
+//! | `toolseed()`, `cells(x, #)` | the tool's own seed; after how many cells it repeats along an axis |
 //! | `input("name", e)` | an input of the graph, a number |
 //! | `index()` | which output of the node is asked for, from its last letter |
 //! | `type()`, `space("file")` | the name of the output's type; the colour space of a picture |
@@ -60,6 +61,11 @@ pub(crate) trait Call {
 
     /// A part of the node's rule that has a name.
     fn local(&self, _: &str) -> Option<&'static Expr> {
+        None
+    }
+
+    /// The seed that the node has in the tool that it comes from.
+    fn tool_seed(&self) -> Option<i32> {
         None
     }
 
@@ -298,6 +304,28 @@ impl Evaluation<'_> {
             "seed" => {
                 let offset = self.whole(argument(0)?)?;
                 Ok(Value::float(f64::from(self.call.seed()) + offset as f64))
+            }
+            "toolseed" => Ok(Value::float(f64::from(match self.call.tool_seed() {
+                Some(seed) => seed,
+                None => {
+                    let note =
+                        "the noise has other blobs than Material Maker's, with the same statistics";
+                    self.builder.notes.push(note.to_owned());
+                    self.call.seed()
+                }
+            }))),
+            "cells" => {
+                let (cells, octave) = (self.value(argument(0)?)?, self.value(argument(1)?)?);
+                let cells = self.builder.decided(cells);
+                let cells = match (&cells, &octave) {
+                    (Value::Literal(cells), Value::Literal(octave)) => {
+                        let first = |literal: &Literal| literal.numbers().first().copied();
+                        first(cells).unwrap_or(0.0) * first(octave).unwrap_or(0.0).exp2()
+                    }
+                    _ => 0.0,
+                };
+                let repeats = cells.fract() == 0.0 && (1.0..=65_536.0).contains(&cells);
+                Ok(Value::float(if repeats { cells } else { 0.0 }))
             }
             "period" => self.period(arguments),
             "sin" | "cos" if arguments.iter().all(|(key, _)| key.is_none()) => {

@@ -44,9 +44,10 @@ fn main() {
     }
     let back = Arc::clone(&folder);
     trials.push(
-        Trial::test("documents_that_load_come_back_from_their_export", move || {
-            round_trips(&back)
-        })
+        Trial::test(
+            "documents_that_load_come_back_from_their_export",
+            move || round_trips(&back),
+        )
         .with_ignored_flag(missing),
     );
     let cut = Arc::clone(&folder);
@@ -441,7 +442,10 @@ fn round_trips(folder: &Path) -> Result<(), Failed> {
         }
     }
     if asked("MIPLESS_REPORT") {
-        println!("mtlx: {count} documents are written, {} not as they were", wrong.len());
+        println!(
+            "mtlx: {count} documents are written, {} not as they were",
+            wrong.len()
+        );
     }
     if wrong.is_empty() {
         return Ok(());

@@ -193,6 +193,11 @@ impl Call for NodeCall<'_, '_> {
         (Type::Color3, "out")
     }
 
+    fn tool_seed(&self) -> Option<i32> {
+        let seed = (self.maker.graphs).tool_seed(self.port.graph, &self.port.node)?;
+        i32::try_from(seed).ok()
+    }
+
     fn seed(&self) -> i32 {
         self.maker.graphs.seed(self.port.graph, &self.port.node)
     }

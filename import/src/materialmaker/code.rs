@@ -88,12 +88,7 @@ impl Code {
 
 /// The expression that a text is, or its fourth component.
 /// `inputs` are names and types, `colors` the parameters that are colours.
-fn expression(
-    text: &str,
-    inputs: &[(&str, &str)],
-    colors: &[&str],
-    alpha: bool,
-) -> Option<Expr> {
+fn expression(text: &str, inputs: &[(&str, &str)], colors: &[&str], alpha: bool) -> Option<Expr> {
     if text.len() > LONGEST {
         return None;
     }
@@ -210,7 +205,10 @@ impl<'t> Parser<'t> {
         match parts.len() {
             1 => parts.into_iter().next(),
             2 => Some(Expr::List(parts)),
-            3 => Some(call("rgb", parts.into_iter().map(|part| (None, part)).collect())),
+            3 => Some(call(
+                "rgb",
+                parts.into_iter().map(|part| (None, part)).collect(),
+            )),
             _ => None,
         }
     }
@@ -244,7 +242,10 @@ impl<'t> Parser<'t> {
         if self.take('$') {
             return self.named();
         }
-        if self.rest.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
+        if self
+            .rest
+            .starts_with(|c: char| c.is_ascii_digit() || c == '.')
+        {
             let end = self.rest.find(|c: char| !c.is_ascii_digit() && c != '.');
             let (digits, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
             self.rest = rest.trim_start();
@@ -312,37 +313,71 @@ fn made(name: &str, arguments: Vec<Expr>) -> Option<Expr> {
             Expr::List(vec![a.clone(), a])
         }
         ("vec2", 2) => Expr::List(vec![first()?, first()?]),
-        ("vec3", 1) => call("as", vec![(None, Expr::Text("color3".to_owned())), (None, first()?)]),
+        ("vec3", 1) => call(
+            "as",
+            vec![(None, Expr::Text("color3".to_owned())), (None, first()?)],
+        ),
         ("vec3" | "vec4", 3 | 4) => call(
             "rgb",
             vec![(None, first()?), (None, first()?), (None, first()?)],
         ),
-        ("vec4", 1 | 2) => call("as", vec![(None, Expr::Text("color3".to_owned())), (None, first()?)]),
+        ("vec4", 1 | 2) => call(
+            "as",
+            vec![(None, Expr::Text("color3".to_owned())), (None, first()?)],
+        ),
         ("sin" | "cos", 1) => call(name, vec![(None, first()?)]),
-        ("tan" | "floor" | "ceil" | "fract" | "sqrt" | "exp" | "sign" | "round" | "normalize", 1) => {
-            one(name, first()?)
-        }
+        (
+            "tan" | "floor" | "ceil" | "fract" | "sqrt" | "exp" | "sign" | "round" | "normalize",
+            1,
+        ) => one(name, first()?),
         ("abs", 1) => one("absval", first()?),
         ("log", 1) => one("ln", first()?),
         ("length", 1) => one("magnitude", first()?),
         ("min" | "max", 2) => call(name, vec![(Some("in1"), first()?), (Some("in2"), first()?)]),
         ("pow", 2) => call("pow", vec![(None, first()?), (None, first()?)]),
-        ("mod", 2) => call("modulo", vec![(Some("in1"), first()?), (Some("in2"), first()?)]),
-        ("atan", 2) => call("atan2", vec![(Some("iny"), first()?), (Some("inx"), first()?)]),
-        ("dot", 2) => call("dotproduct", vec![(Some("in1"), first()?), (Some("in2"), first()?)]),
-        ("distance", 2) => call("distance", vec![(Some("in1"), first()?), (Some("in2"), first()?)]),
+        ("mod", 2) => call(
+            "modulo",
+            vec![(Some("in1"), first()?), (Some("in2"), first()?)],
+        ),
+        ("atan", 2) => call(
+            "atan2",
+            vec![(Some("iny"), first()?), (Some("inx"), first()?)],
+        ),
+        ("dot", 2) => call(
+            "dotproduct",
+            vec![(Some("in1"), first()?), (Some("in2"), first()?)],
+        ),
+        ("distance", 2) => call(
+            "distance",
+            vec![(Some("in1"), first()?), (Some("in2"), first()?)],
+        ),
         ("mix", 3) => call(
             "mix",
-            vec![(Some("bg"), first()?), (Some("fg"), first()?), (Some("mix"), first()?)],
+            vec![
+                (Some("bg"), first()?),
+                (Some("fg"), first()?),
+                (Some("mix"), first()?),
+            ],
         ),
         ("clamp", 3) => call(
             "clamp",
-            vec![(Some("in"), first()?), (Some("low"), first()?), (Some("high"), first()?)],
+            vec![
+                (Some("in"), first()?),
+                (Some("low"), first()?),
+                (Some("high"), first()?),
+            ],
         ),
-        ("step", 2) => call("step", vec![(Some("edge"), first()?), (Some("in"), first()?)]),
+        ("step", 2) => call(
+            "step",
+            vec![(Some("edge"), first()?), (Some("in"), first()?)],
+        ),
         ("smoothstep", 3) => call(
             "smoothstep",
-            vec![(Some("low"), first()?), (Some("high"), first()?), (Some("in"), first()?)],
+            vec![
+                (Some("low"), first()?),
+                (Some("high"), first()?),
+                (Some("in"), first()?),
+            ],
         ),
         _ => return None,
     })
@@ -364,14 +399,37 @@ mod tests {
                 "{glsl}"
             );
         };
-        same("mix($c1, $c2, $in($uv))", "mix(bg: $c1, fg: $c2, mix: $in(uv))");
-        same("$in($uv+$a*vec2(1.0, 0.0)).x", "part($in(uv + $a * [1, 0]), 0)");
-        same("-2.0*(0.5 - $d(fract($uv)))", "-2 * (0.5 - $d(fract(in: uv)))");
-        assert_eq!(
-            expression("mix($c, vec4($in($uv), $d($uv)), $k)", &INPUTS, &["c"], true),
-            Some(Rules::expression("mix(bg: alpha(\"c\"), fg: $d(uv), mix: $k)"))
+        same(
+            "mix($c1, $c2, $in($uv))",
+            "mix(bg: $c1, fg: $c2, mix: $in(uv))",
         );
-        for foreign in ["$in($uv) > 0.5 ? 1.0 : 0.0", "texture(t, $uv)", "f($uv", "", "1.0.0", "$in"] {
+        same(
+            "$in($uv+$a*vec2(1.0, 0.0)).x",
+            "part($in(uv + $a * [1, 0]), 0)",
+        );
+        same(
+            "-2.0*(0.5 - $d(fract($uv)))",
+            "-2 * (0.5 - $d(fract(in: uv)))",
+        );
+        assert_eq!(
+            expression(
+                "mix($c, vec4($in($uv), $d($uv)), $k)",
+                &INPUTS,
+                &["c"],
+                true
+            ),
+            Some(Rules::expression(
+                "mix(bg: alpha(\"c\"), fg: $d(uv), mix: $k)"
+            ))
+        );
+        for foreign in [
+            "$in($uv) > 0.5 ? 1.0 : 0.0",
+            "texture(t, $uv)",
+            "f($uv",
+            "",
+            "1.0.0",
+            "$in",
+        ] {
             assert_eq!(expression(foreign, &INPUTS, &[], false), None, "{foreign}");
         }
         let deep = "(".repeat(1_000);
