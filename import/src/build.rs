@@ -46,8 +46,8 @@ pub(crate) struct Builder {
     pub(crate) notes: Vec<String>,
 }
 
-/// The most nodes that a document becomes.
-pub(crate) const MOST_NODES: usize = 1_000_000;
+/// The most nodes that a document becomes: those that a graph may have.
+pub(crate) const MOST_NODES: usize = mipless_graph::MAX_NODES as usize;
 
 impl Builder {
     pub(crate) fn new(specs: &[&'static NodeSpec]) -> Self {

@@ -12,6 +12,8 @@
 //! | `rgba(c, a)`, `rgb(r, g, b)` | a colour with another alpha; a colour of three numbers |
 //! | `alpha("port", e)` | the alpha of an input, at the coordinate `e` if there is one |
 //! | `sum(n, e)` | `e` for each `#` from 0 up to n, summed, the last one by the share of it that n has |
+//! | `whole(e)` | rounded down, worked out where it is a literal |
+//! | `most(n, e)` | the largest `e` for `#` from 0 to n − 1 |
 //! | `ramp(e)` | the node's stops at `e`, by its interpolation |
 //! | `sin(e)`, `cos(e)`, `pow(a, b)` | worked out where they are literals |
 //! | `seed(e)`, `period(x, y, #)` | the node's own random numbers; after how many cells they repeat |
@@ -243,6 +245,34 @@ impl Evaluation<'_> {
                     )),
                     _ => self.builder.part(&value, index),
                 }
+            }
+            "whole" => match self.value(argument(0)?)? {
+                Value::Literal(literal) => {
+                    let number = literal.numbers().first().copied().unwrap_or(0.0);
+                    Ok(Value::float(number.floor()))
+                }
+                value => {
+                    let inputs = vec![("in".to_owned(), value)];
+                    self.builder.node("floor", inputs, "out")
+                }
+            },
+            "most" => {
+                let count = self.whole(argument(0)?)?.clamp(1, LONGEST_SUM);
+                let outer = self.channel;
+                let mut most = None;
+                for i in 0..count {
+                    self.channel = Some(i);
+                    let term = self.value(argument(1)?)?;
+                    most = Some(match most {
+                        None => term,
+                        Some(most) => {
+                            let inputs = vec![("in1".to_owned(), most), ("in2".to_owned(), term)];
+                            self.builder.node("max", inputs, "out")?
+                        }
+                    });
+                }
+                self.channel = outer;
+                most.ok_or_else(|| wrong_rule("`most` has terms"))
             }
             "ramp" => {
                 let place = self.value(argument(0)?)?;

@@ -78,6 +78,13 @@ fn a_gltf_document_is_materialx_in_json() {
 fn every_truncation_of_a_document_is_refused_with_a_place() {
     let documents = [
         (Format::MaterialX, wrapped(r#"<nodegraph name="g"><absval name="n" type="float"/><output name="out" type="float" nodename="n"/></nodegraph>"#)),
+        (Format::MaterialX, wrapped(r#"<nodedef name="ND_d" node="d"><input name="in" type="vector2" defaultgeomprop="UV0"/><output name="out" type="color3"/></nodedef>
+           <nodegraph name="NG_d" nodedef="ND_d"><noise2d name="n" type="color3"><input name="texcoord" type="vector2" interfacename="in"/></noise2d><output name="out" type="color3" nodename="n"/></nodegraph>
+           <nodegraph name="g"><input name="k" type="float" value="2" uimin="1" unit="degree" unittype="angle"/><d name="d" type="color3"/>
+           <multiply name="m" type="color3" colorspace="srgb_texture"><input name="in1" type="color3" nodename="d"/><input name="in2" type="float" interfacename="k"/></multiply>
+           <output name="out" type="color3" nodename="m"/></nodegraph>
+           <standard_surface name="s" type="surfaceshader"><input name="base_color" type="color3" nodegraph="g" output="out"/></standard_surface>
+           <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>"#)),
         (Format::MaterialMaker, r#"{ "nodes": [ { "name": "Material", "type": "material" } ], "connections": [] }"#.to_owned()),
         (Format::Gltf, r#"{ "extensions": { "KHR_texture_procedurals": { "procedurals": [ { "nodes": [ { "inputs": { "a": {} } } ] } ] } } }"#.to_owned()),
     ];
