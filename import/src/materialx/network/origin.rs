@@ -6,7 +6,7 @@ use crate::element::{Id, Tree};
 use crate::materialx::definition::Definition;
 use crate::materialx::literal;
 use crate::value::{Literal, Value};
-use mipless_graph::{Diagnostic, InputEntry, Type};
+use mipless_graph::{InputEntry, Type};
 use serde_json::Value as Json;
 
 /// Where it comes from.
@@ -180,15 +180,6 @@ impl Network<'_> {
             (scope.graph, scope.user.clone())
         };
         let Some((outer, node, definition)) = user else {
-            if graph == Tree::ROOT {
-                // MaterialX's generator reads interfaces of nodegraphs alone.
-                let message = format!(
-                    "`{name}` is no input of a nodegraph: the default is taken, as MaterialX takes it"
-                );
-                let note = Diagnostic::note("import-approximated", message);
-                self.findings.say(&self.tree.place(element), note);
-                return Err(Origin::Default);
-            }
             if let Some(found) = self.tree.input(graph, name) {
                 return Ok((scope, found));
             }
