@@ -253,6 +253,7 @@ fn fractions_of_octaves_go_smoothly_from_one_count_to_the_next() {
 }
 
 /// Material Maker's value noise, one octave, as its shader computes it in f32.
+#[expect(clippy::approx_constant, reason = "3.14 is Material Maker's number")]
 fn material_makers([x, y]: [f32; 2], size: [f32; 2], seed: f32) -> f32 {
     let number = |[x, y]: [f32; 2], [a, b]: [f32; 2]| {
         let phase = x * a + y * b;

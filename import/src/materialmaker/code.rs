@@ -151,11 +151,7 @@ impl<'t> Parser<'t> {
             return None;
         }
         let mut left = self.product()?;
-        loop {
-            let operator = match self.rest.chars().next() {
-                Some(operator @ ('+' | '-')) => operator,
-                _ => break,
-            };
+        while let Some(operator @ ('+' | '-')) = self.rest.chars().next() {
             self.take(operator);
             left = Expr::Binary(operator, Box::new(left), Box::new(self.product()?));
         }

@@ -9,7 +9,8 @@ use mipless_codegen::ir::{Int, Uint, dot};
 /// What a point is multiplied by for the first and the second of its numbers.
 const DIRECTIONS: [[f32; 2]; 2] = [[13.9898, 8.141], [3.4562, 17.398]];
 
-/// What phases are taken modulo.
+/// What phases are taken modulo: not π.
+#[expect(clippy::approx_constant, reason = "it is Material Maker's number")]
 const TURN: f32 = 3.14;
 
 /// What cosines are multiplied by.
