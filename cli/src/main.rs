@@ -8,6 +8,7 @@ mod check;
 mod compare;
 mod compile;
 mod completions;
+mod export;
 mod foreign;
 mod import;
 mod importing;
@@ -72,6 +73,8 @@ enum Verb {
     Trade(trade::Arguments),
     /// Read a document of another tool (.mtlx, .ptex, .gltf) and write it as a graph
     Import(import::Arguments),
+    /// Write a graph as a MaterialX document (.mtlx)
+    Export(export::Arguments),
     /// List the catalogue of nodes, or show the page of one
     Nodes(nodes::Arguments),
     /// Write a small commented graph to start from
@@ -95,6 +98,7 @@ fn main() -> ExitCode {
         Verb::Compile(arguments) => compile::run(arguments, &mut report),
         Verb::Trade(arguments) => trade::run(arguments, &mut report),
         Verb::Import(arguments) => import::run(arguments, &mut report),
+        Verb::Export(arguments) => export::run(arguments, &mut report),
         Verb::Nodes(arguments) => nodes::run(arguments, &mut report),
         Verb::New(arguments) => new::run(arguments, &mut report),
         Verb::Schema => schema::run(&mut report),

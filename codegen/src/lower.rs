@@ -188,6 +188,10 @@ impl InputView for Varying {
         vec![[1.0, 1.0]]
     }
 
+    fn matrix(&self, _: &str) -> Vec<f32> {
+        vec![1.0]
+    }
+
     fn picture(&self, _: &str) -> Option<&Picture> {
         None
     }

@@ -184,6 +184,13 @@ impl InputView for View<'_> {
         }
     }
 
+    fn matrix(&self, port: &str) -> Vec<f32> {
+        match self.node.literal(port) {
+            Literal::Matrix(numbers) => numbers.clone(),
+            other => panic!("{port} of {} is no matrix: {other:?}", self.node.spec.name),
+        }
+    }
+
     fn picture(&self, port: &str) -> Option<&Picture> {
         self.graph.images.get(self.choice(port)).map(Arc::as_ref)
     }

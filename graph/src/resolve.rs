@@ -14,6 +14,7 @@ mod literal;
 mod nesting;
 mod order;
 mod range;
+mod synonym;
 mod template;
 
 use rustc_hash::{FxHashMap, FxHashSet};

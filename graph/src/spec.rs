@@ -324,6 +324,8 @@ pub trait InputView {
     fn in_space(&self, port: &str) -> bool;
     /// The stops of a uniform port, as places and the means of their values' components.
     fn stops(&self, port: &str) -> Vec<[f32; 2]>;
+    /// The numbers of a matrix.
+    fn matrix(&self, port: &str) -> Vec<f32>;
     /// The picture that a port names, if there is one.
     fn picture(&self, port: &str) -> Option<&Picture>;
     /// Whether two inputs are the output of the same node, so that they move together.

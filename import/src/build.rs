@@ -46,8 +46,8 @@ pub(crate) struct Builder {
     pub(crate) notes: Vec<String>,
 }
 
-/// The most nodes that a document becomes.
-pub(crate) const MOST_NODES: usize = 1_000_000;
+/// The most nodes that a document becomes: those that a graph may have.
+pub(crate) const MOST_NODES: usize = mipless_graph::MAX_NODES as usize;
 
 impl Builder {
     pub(crate) fn new(specs: &[&'static NodeSpec]) -> Self {
@@ -109,7 +109,10 @@ impl Builder {
                 entry.inputs.insert(port.name.to_owned(), binding);
             }
         }
-        let ty = output_type(spec, &entry, common);
+        let ty = match spec.output {
+            OutputType::Joined => joined(spec, &ports),
+            _ => output_type(spec, &entry, common),
+        };
         let reference = self.insert(entry, output)?;
         Ok(Value::Link(Link {
             binding: Binding::Node(reference),
@@ -265,7 +268,7 @@ impl Builder {
     }
 
     /// The node, or the one that is the same already.
-    fn insert(&mut self, entry: NodeEntry, output: &str) -> Result<Reference, Refusal> {
+    pub(crate) fn insert(&mut self, entry: NodeEntry, output: &str) -> Result<Reference, Refusal> {
         let key = format!("{} {:?}", entry.ty, entry.inputs);
         let output = output.to_owned();
         if let Some(node) = self.made.get(&key) {
@@ -366,6 +369,32 @@ fn literal_suffices(ports: &[(&PortSpec, Value)], common: Type) -> bool {
     ports.iter().any(|(port, value)| {
         port.ty == PortType::Any && matches!(value, Value::Link(link) if link.ty == common)
     })
+}
+
+/// The components of the inputs one after another: a colour where one of them is, else a vector.
+fn joined(spec: &NodeSpec, ports: &[(&PortSpec, Value)]) -> Type {
+    let own = spec.inputs.iter().filter(|port| port.ty == PortType::Own);
+    let types: Vec<Type> = own
+        .map(|port| {
+            let given = ports.iter().find(|(given, _)| given.name == port.name);
+            given
+                .and_then(|(_, value)| value.ty())
+                .unwrap_or(Type::Float)
+        })
+        .collect();
+    let is_color = types
+        .iter()
+        .any(|ty| matches!(ty, Type::Color3 | Type::Color4));
+    match (
+        types.iter().map(|ty| ty.components()).sum::<usize>(),
+        is_color,
+    ) {
+        (..=2, _) => Type::Vector2,
+        (3, true) => Type::Color3,
+        (3, false) => Type::Vector3,
+        (_, true) => Type::Color4,
+        (_, false) => Type::Vector4,
+    }
 }
 
 /// The type of the node's output.

@@ -11,14 +11,20 @@
 //! | `fold(node, e)` | the node over all parts of `e` |
 //! | `rgba(c, a)`, `rgb(r, g, b)` | a colour with another alpha; a colour of three numbers |
 //! | `alpha("port", e)` | the alpha of an input, at the coordinate `e` if there is one |
-//! | `sum(n, e)` | `e` for each `#` from 0 to n − 1, summed |
+//! | `sum(n, e)` | `e` for each `#` from 0 up to n, summed, the last one by the share of it that n has |
+//! | `whole(e)` | rounded down, worked out where it is a literal |
+//! | `most(n, e)` | the largest `e` for `#` from 0 to n − 1 |
+//! | `ramp(e)` | the node's stops at `e`, by its interpolation |
 //! | `sin(e)`, `cos(e)`, `pow(a, b)` | worked out where they are literals |
 //! | `seed(e)`, `period(x, y, #)` | the node's own random numbers; after how many cells they repeat |
+//! | `toolseed()`, `cells(x, #)` | the tool's own seed; after how many cells it repeats along an axis |
 //! | `input("name", e)` | an input of the graph, a number |
 //! | `index()` | which output of the node is asked for, from its last letter |
 //! | `type()`, `space("file")` | the name of the output's type; the colour space of a picture |
 //! | `determinant(m)`, `transpose(m)`, `invertmatrix(m)` | of literals |
 //! | `note("text", e)`, `refuse("code", "text")` | says so |
+
+mod ramp;
 
 use crate::build::{Builder, Refusal};
 use crate::matrix;
@@ -57,6 +63,11 @@ pub(crate) trait Call {
 
     /// A part of the node's rule that has a name.
     fn local(&self, _: &str) -> Option<&'static Expr> {
+        None
+    }
+
+    /// The seed that the node has in the tool that it comes from.
+    fn tool_seed(&self) -> Option<i32> {
         None
     }
 
@@ -176,16 +187,18 @@ impl Evaluation<'_> {
                 }
             }
         }
-        let is = |value: &Value, number: f64| {
-            matches!(value, Value::Literal(literal)
-                if literal.ty().is_some_and(|ty| ty.components() == 1)
-                    && literal.numbers() == [number])
+        // What changes nothing, and is no wider than what it would change.
+        let is = |value: &Value, number: f64, beside: &Value| {
+            let wide = |value: &Value| value.ty().map_or(0, Type::components);
+            matches!(value, Value::Literal(literal) if !literal.numbers().is_empty()
+                && literal.numbers().iter().all(|x| *x == number))
+                && wide(value) <= wide(beside)
         };
         let name = match operator {
-            '+' if is(&left, 0.0) => return Ok(right),
-            '+' | '-' if is(&right, 0.0) => return Ok(left),
-            '*' if is(&left, 1.0) => return Ok(right),
-            '*' | '/' if is(&right, 1.0) => return Ok(left),
+            '+' if is(&left, 0.0, &right) => return Ok(right),
+            '+' | '-' if is(&right, 0.0, &left) => return Ok(left),
+            '*' if is(&left, 1.0, &right) => return Ok(right),
+            '*' | '/' if is(&right, 1.0, &left) => return Ok(left),
             '+' => "add",
             '-' => "subtract",
             '*' => "multiply",
@@ -233,6 +246,38 @@ impl Evaluation<'_> {
                     _ => self.builder.part(&value, index),
                 }
             }
+            "whole" => match self.value(argument(0)?)? {
+                Value::Literal(literal) => {
+                    let number = literal.numbers().first().copied().unwrap_or(0.0);
+                    Ok(Value::float(number.floor()))
+                }
+                value => {
+                    let inputs = vec![("in".to_owned(), value)];
+                    self.builder.node("floor", inputs, "out")
+                }
+            },
+            "most" => {
+                let count = self.whole(argument(0)?)?.clamp(1, LONGEST_SUM);
+                let outer = self.channel;
+                let mut most = None;
+                for i in 0..count {
+                    self.channel = Some(i);
+                    let term = self.value(argument(1)?)?;
+                    most = Some(match most {
+                        None => term,
+                        Some(most) => {
+                            let inputs = vec![("in1".to_owned(), most), ("in2".to_owned(), term)];
+                            self.builder.node("max", inputs, "out")?
+                        }
+                    });
+                }
+                self.channel = outer;
+                most.ok_or_else(|| wrong_rule("`most` has terms"))
+            }
+            "ramp" => {
+                let place = self.value(argument(0)?)?;
+                self.ramp(&place)
+            }
             "each" => {
                 let ty = self.call.output().0;
                 let outer = self.channel;
@@ -270,13 +315,18 @@ impl Evaluation<'_> {
                 self.call.alpha(self.builder, text(0)?, at.as_ref())
             }
             "sum" => {
-                let count = self.whole(argument(0)?)?.clamp(1, LONGEST_SUM);
+                let count = self.count(argument(0)?)?;
                 let outer = self.channel;
                 let mut sum = Value::float(0.0);
-                for i in 0..count {
+                let mut left = count.clamp(1.0, LONGEST_SUM as f64);
+                let mut i = 0;
+                while left > 0.0 {
                     self.channel = Some(i);
                     let term = self.value(argument(1)?)?;
+                    let term = self.binary('*', Value::float(left.min(1.0)), term)?;
                     sum = self.binary('+', sum, term)?;
+                    left -= 1.0;
+                    i += 1;
                 }
                 self.channel = outer;
                 Ok(sum)
@@ -284,6 +334,28 @@ impl Evaluation<'_> {
             "seed" => {
                 let offset = self.whole(argument(0)?)?;
                 Ok(Value::float(f64::from(self.call.seed()) + offset as f64))
+            }
+            "toolseed" => Ok(Value::float(f64::from(match self.call.tool_seed() {
+                Some(seed) => seed,
+                None => {
+                    let note =
+                        "the noise has other blobs than Material Maker's, with the same statistics";
+                    self.builder.notes.push(note.to_owned());
+                    self.call.seed()
+                }
+            }))),
+            "cells" => {
+                let (cells, octave) = (self.value(argument(0)?)?, self.value(argument(1)?)?);
+                let cells = self.builder.decided(cells);
+                let cells = match (&cells, &octave) {
+                    (Value::Literal(cells), Value::Literal(octave)) => {
+                        let first = |literal: &Literal| literal.numbers().first().copied();
+                        first(cells).unwrap_or(0.0) * first(octave).unwrap_or(0.0).exp2()
+                    }
+                    _ => 0.0,
+                };
+                let repeats = cells.fract() == 0.0 && (1.0..=65_536.0).contains(&cells);
+                Ok(Value::float(if repeats { cells } else { 0.0 }))
             }
             "period" => self.period(arguments),
             "sin" | "cos" if arguments.iter().all(|(key, _)| key.is_none()) => {
@@ -402,7 +474,7 @@ impl Evaluation<'_> {
                         .ok_or_else(|| wrong_rule("an input has a name"))?;
                     inputs.push((port, self.value(expr)?));
                 }
-                match literal_extremum(name, &inputs) {
+                match of_literals(name, &inputs) {
                     Some(value) => Ok(value),
                     None => self.builder.node(name, inputs, output),
                 }
@@ -424,6 +496,21 @@ impl Evaluation<'_> {
         let cells = x * octave.exp2();
         let repeats = x == y && x.fract() == 0.0 && (1.0..=65_536.0).contains(&cells);
         Ok(Value::float(if repeats { cells } else { 0.0 }))
+    }
+
+    /// A literal number that is not negative.
+    fn count(&mut self, expr: &Expr) -> Result<f64, Refusal> {
+        let value = self.value(expr)?;
+        match self.builder.decided(value) {
+            Value::Literal(literal) => match literal.numbers() {
+                [number] if *number >= 0.0 => Ok(*number),
+                _ => Err(Refusal::new("import-value", "a number of terms is wanted")),
+            },
+            Value::Link(_) => Err(Refusal::new(
+                "import-literal-only",
+                "the number of terms must be a literal",
+            )),
+        }
     }
 
     /// A literal whole number.
@@ -468,23 +555,27 @@ impl Evaluation<'_> {
 /// The most terms of a sum: octaves beyond are finer than any texture is looked at.
 const LONGEST_SUM: usize = 16;
 
-/// The greater or lesser of two numbers that are literals.
-fn literal_extremum(name: &str, inputs: &[(String, Value)]) -> Option<Value> {
+/// What a node makes of two numbers that are literals.
+fn of_literals(name: &str, inputs: &[(String, Value)]) -> Option<Value> {
     let [(_, Value::Literal(a)), (_, Value::Literal(b))] = inputs else {
         return None;
     };
     match (name, a.numbers(), b.numbers()) {
         ("min", [a], [b]) => Some(Value::float(a.min(*b))),
         ("max", [a], [b]) => Some(Value::float(a.max(*b))),
+        ("modulo", [a], [b]) if *b > 0.0 => Some(Value::float(a.rem_euclid(*b))),
         _ => None,
     }
 }
 
 /// The codes that rules refuse by.
-pub(crate) const REFUSALS: [&str; 5] = [
+pub(crate) const REFUSALS: [&str; 8] = [
+    "export-node",
+    "export-port",
     "import-geometry",
     "import-foreign-code",
     "import-image",
     "import-node-missing",
     "import-input-missing",
+    "import-value",
 ];

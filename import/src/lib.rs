@@ -30,6 +30,7 @@
 mod build;
 mod element;
 mod eval;
+mod export;
 mod gltf;
 mod json;
 mod materialmaker;
@@ -49,6 +50,7 @@ use std::fmt;
 use std::io;
 use std::path::Path;
 
+pub use export::{Exported, export};
 pub use place::Finding;
 
 /// What a file is written in.

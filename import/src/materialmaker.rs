@@ -3,6 +3,7 @@
 //! argument.
 
 mod call;
+mod code;
 mod graph;
 mod parameter;
 
@@ -13,6 +14,7 @@ use crate::rule::{Expr, Rules};
 use crate::value::{Literal, Value};
 use crate::{Imported, Options, Output};
 use call::NodeCall;
+use code::Code;
 use graph::Graphs;
 use mipless_graph::{Diagnostic, NodeSpec, Type};
 use rustc_hash::FxHashMap;
@@ -334,24 +336,33 @@ impl Maker<'_> {
                 None => Ok(Value::float(nothing)),
             };
         }
-        if kind == "shader" {
-            let message = "it is code that its author wrote, which is not run here";
-            return Err(Refusal::new("import-foreign-code", message));
-        }
-        let rules = rules();
-        let rule = if alpha {
-            match rules.get(&format!("{kind}.alpha")) {
-                Some(rule) => rule,
-                None => return Ok(Value::float(1.0)),
-            }
+        // What the node's author wrote is a rule of its own, if it is one expression.
+        let own = if kind == "shader" {
+            let node = self.graphs.node(port.graph, &port.node);
+            let code = node.and_then(|node| Code::read(node, port.port, alpha));
+            Some(code.ok_or_else(|| {
+                let message = "it is code that its author wrote, which is not run here";
+                Refusal::new("import-foreign-code", message)
+            })?)
         } else {
-            let several = format!("{kind}.{}", port.port);
-            rules
-                .get(&several)
-                .or_else(|| rules.get(&kind))
-                .ok_or_else(|| Refusal::new("import-node-missing", "there is no such node here"))?
+            None
         };
-        let signature = signatures().get(&kind);
+        let rules = rules();
+        let (rule, signature) = match &own {
+            Some(code) => (&code.rule, Some(&code.signature)),
+            None if alpha => match rules.get(&format!("{kind}.alpha")) {
+                Some(rule) => (rule, signatures().get(&kind)),
+                None => return Ok(Value::float(1.0)),
+            },
+            None => {
+                let several = format!("{kind}.{}", port.port);
+                let rule = rules.get(&several).or_else(|| rules.get(&kind));
+                let rule = rule.ok_or_else(|| {
+                    Refusal::new("import-node-missing", "there is no such node here")
+                })?;
+                (rule, signatures().get(&kind))
+            }
+        };
         let place = self.graphs.place(port.graph, &port.node);
         let hint = place.path.trim_start_matches('/').replace('/', "_");
         self.builder.hint.clone_from(&hint);

@@ -23,6 +23,7 @@ pub(crate) mod steep;
 pub(crate) mod sum;
 pub(crate) mod things;
 mod tile;
+mod trigonometric;
 pub(crate) mod volume;
 mod window;
 pub(crate) mod worley;

@@ -251,3 +251,88 @@ fn fractions_of_octaves_go_smoothly_from_one_count_to_the_next() {
         assert!((quarter[i][0] - expected).abs() < 1e-5);
     }
 }
+
+/// Material Maker's value noise, one octave, as its shader computes it in f32.
+#[expect(clippy::approx_constant, reason = "3.14 is Material Maker's number")]
+fn material_makers([x, y]: [f32; 2], size: [f32; 2], seed: f32) -> f32 {
+    let number = |[x, y]: [f32; 2], [a, b]: [f32; 2]| {
+        let phase = x * a + y * b;
+        let phase = phase - 3.14 * (phase / 3.14).floor();
+        (phase.cos() * 43_758.5).rem_euclid(1.0)
+    };
+    let (first, second) = ([13.9898, 8.141], [3.4562, 17.398]);
+    let start = [seed, 1.0 - seed];
+    let start = [number(start, first), number(start, second)];
+    let cell = [x.floor(), y.floor()];
+    let corner = |i: f32, j: f32| {
+        let place = [
+            (cell[0] + i).rem_euclid(size[0]) + start[0],
+            (cell[1] + j).rem_euclid(size[1]) + start[1],
+        ];
+        number(place, first)
+    };
+    let fade = |t: f32| t * t * (3.0 - 2.0 * t);
+    let (s, t) = (fade(x - cell[0]), fade(y - cell[1]));
+    let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+    mix(
+        mix(corner(0.0, 0.0), corner(1.0, 0.0), s),
+        mix(corner(0.0, 1.0), corner(1.0, 1.0), s),
+        t,
+    )
+}
+
+#[test]
+fn the_hash_of_material_maker_gives_its_values_with_a_period_for_each_axis() {
+    for (seed, size) in [
+        (0, [4, 4]),
+        (1_234, [3, 7]),
+        (-27_810, [16, 5]),
+        (65_535, [1, 2]),
+    ] {
+        let json = format!(
+            r#"{{"version":1,"name":"n","nodes":{{"n":{{"type":"valuenoise2d","inputs":{{"hash":"materialmaker","seed":{seed},
+               "period":{},"period_v":{}}}}}}},"outputs":{{"out":{{"node":"n"}}}}}}"#,
+            size[0], size[1]
+        );
+        let places: Vec<[f64; 2]> = (positions(400).into_iter())
+            .map(|[x, y]| [x - 20.0, y - 20.0])
+            .collect();
+        let footprints: Vec<Footprint> = places.iter().map(|&p| at(p, [[0.0; 2]; 2])).collect();
+        let catalogue = mipless_nodes::catalogue();
+        let specs: Vec<_> = catalogue.iter().map(|d| d.spec).collect();
+        let graph = load(&json, &specs).graph.expect("resolves");
+        let checked = check(graph, &CheckOptions::default()).expect("checks");
+        let options = Options {
+            method: Method::Point,
+            ..Options::default()
+        };
+        let program = compile(&checked, catalogue, &options);
+        let values = &eval_program::<f32>(&program, &footprints, &[])[0];
+        let mut off: Vec<f32> = (places.iter().zip(values))
+            .map(|(&[x, y], value)| {
+                let wanted =
+                    material_makers([x as f32, y as f32], size.map(|n| n as f32), seed as f32);
+                (wanted - value).abs()
+            })
+            .collect();
+        off.sort_by(f32::total_cmp);
+        println!("{seed} {size:?}: {:?} {:?}", off[200], off[395]);
+        assert!(off[395] <= 0.005, "{seed} {size:?}: {}", off[395]);
+    }
+}
+
+/// Variance 1: the standard deviation of the cubic window's noise is 0.2144 amplitude.
+const CUBIC: &str = r#"{"version":1,"name":"n","nodes":{"n":{"type":"valuenoise2d","inputs":{"hash":"materialmaker","amplitude":4.6632,"pivot":0}}},"outputs":{"out":{"node":"n"}}}"#;
+
+#[test]
+fn filtered_means_of_material_makers_noise_are_those_of_dense_integration() {
+    for (ratio, degrees) in [SHAPES[0], SHAPES[2]] {
+        for size in [0.01, 0.03, 0.06, 0.12, 0.4, 1.2, 3.4] {
+            let minor = size / f64::sqrt(ratio);
+            let methods = [Method::Local, Method::Quad];
+            let found = errors(CUBIC, minor, ratio, degrees, &methods);
+            println!("{ratio}:1 at {degrees}° at {size}: {found:.4?}");
+            assert!(found[0][0] <= 0.035, "{size}, {ratio}:1: {found:?}");
+        }
+    }
+}

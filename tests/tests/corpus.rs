@@ -42,6 +42,14 @@ fn main() {
         let trial = Trial::test(format!("documents_{format}"), move || test(&folder));
         trials.push(trial.with_ignored_flag(missing));
     }
+    let back = Arc::clone(&folder);
+    trials.push(
+        Trial::test(
+            "documents_that_load_come_back_from_their_export",
+            move || round_trips(&back),
+        )
+        .with_ignored_flag(missing),
+    );
     let cut = Arc::clone(&folder);
     trials.push(
         Trial::test(
@@ -385,4 +393,71 @@ fn truncations(folder: &Path) -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// What loads whole is written as MaterialX and read again, and shows the same at every point.
+fn round_trips(folder: &Path) -> Result<(), Failed> {
+    let specs = specs();
+    let (mut count, mut wrong) = (0, Vec::new());
+    for path in documents(folder, "mtlx") {
+        let (before, _) = read(&path);
+        let (Some(document), true) = (&before.document, before.is_complete()) else {
+            continue;
+        };
+        let name = path.file_name().expect("a name").to_string_lossy();
+        let (Some(graph), _) = mipless_graph::resolve(document, &specs) else {
+            wrong.push(format!("{name}: it does not resolve"));
+            continue;
+        };
+        count += 1;
+        let exported = mipless_import::export(&graph, &specs);
+        let Some(text) = exported.text else {
+            let said: Vec<String> = (exported.diagnostics.iter())
+                .map(ToString::to_string)
+                .collect();
+            wrong.push(format!("{name}: {}", said.join("; ")));
+            continue;
+        };
+        let options = mipless_import::Options {
+            specs: &specs,
+            ..mipless_import::Options::default()
+        };
+        let after = import(Format::MaterialX, &name, &text, &options);
+        if !after.is_complete() {
+            let finding = after.findings.first().map(|one| one.diagnostic.to_string());
+            wrong.push(format!("{name}: {}", finding.unwrap_or_default()));
+            continue;
+        }
+        match (texture(&before, &path), texture(&after, &path)) {
+            (Some(Ok(before)), Some(Ok(after))) => {
+                let (before, after) = (points(&before), points(&after));
+                let off = |k: usize| verdict(&after[k..=k], &before[k..=k], false) != "same";
+                if before.len() != after.len() || (0..before.len()).any(off) {
+                    wrong.push(format!("{name}: it shows something else"));
+                }
+            }
+            // Pictures that are not at hand.
+            (Some(Err(_)), Some(Err(_))) => {}
+            _ => wrong.push(format!("{name}: what checks does not check again")),
+        }
+    }
+    if asked("MIPLESS_REPORT") {
+        println!(
+            "mtlx: {count} documents are written, {} not as they were",
+            wrong.len()
+        );
+    }
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    Err(wrong.join("\n").into())
+}
+
+/// The components of all outputs at the points of the references.
+fn points(texture: &Texture) -> Vec<Vec<f32>> {
+    let options = Options {
+        method: Method::Point,
+        ..Options::default()
+    };
+    texture.evaluator(&options).evaluate(&footprints())
 }

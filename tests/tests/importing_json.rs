@@ -78,6 +78,13 @@ fn a_gltf_document_is_materialx_in_json() {
 fn every_truncation_of_a_document_is_refused_with_a_place() {
     let documents = [
         (Format::MaterialX, wrapped(r#"<nodegraph name="g"><absval name="n" type="float"/><output name="out" type="float" nodename="n"/></nodegraph>"#)),
+        (Format::MaterialX, wrapped(r#"<nodedef name="ND_d" node="d"><input name="in" type="vector2" defaultgeomprop="UV0"/><output name="out" type="color3"/></nodedef>
+           <nodegraph name="NG_d" nodedef="ND_d"><noise2d name="n" type="color3"><input name="texcoord" type="vector2" interfacename="in"/></noise2d><output name="out" type="color3" nodename="n"/></nodegraph>
+           <nodegraph name="g"><input name="k" type="float" value="2" uimin="1" unit="degree" unittype="angle"/><d name="d" type="color3"/>
+           <multiply name="m" type="color3" colorspace="srgb_texture"><input name="in1" type="color3" nodename="d"/><input name="in2" type="float" interfacename="k"/></multiply>
+           <output name="out" type="color3" nodename="m"/></nodegraph>
+           <standard_surface name="s" type="surfaceshader"><input name="base_color" type="color3" nodegraph="g" output="out"/></standard_surface>
+           <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>"#)),
         (Format::MaterialMaker, r#"{ "nodes": [ { "name": "Material", "type": "material" } ], "connections": [] }"#.to_owned()),
         (Format::Gltf, r#"{ "extensions": { "KHR_texture_procedurals": { "procedurals": [ { "nodes": [ { "inputs": { "a": {} } } ] } ] } } }"#.to_owned()),
     ];
@@ -97,4 +104,39 @@ fn every_truncation_of_a_document_is_refused_with_a_place() {
             );
         }
     }
+}
+
+#[test]
+fn a_shader_that_is_one_expression_is_read_and_layers_lie_by_their_height() {
+    let text = r#"{ "type": "graph", "nodes": [
+        { "name": "Material", "type": "material", "parameters": {} },
+        { "name": "tint", "type": "shader", "parameters": {
+            "c1": { "type": "Color", "r": 1, "g": 0, "b": 0.5, "a": 1 }, "c2": { "type": "Color", "r": 0, "g": 1, "b": 0.5, "a": 1 }, "k": 2 },
+          "shader_model": { "code": "", "global": [""], "inputs": [ { "name": "in", "type": "f", "default": "$uv.x" } ],
+            "outputs": [ { "type": "rgba", "rgba": "mix($c1, $c2, clamp($k * $in($uv) - 0.25, 0.0, 1.0))" } ],
+            "parameters": [ { "name": "c1", "type": "color" }, { "name": "c2", "type": "color" }, { "name": "k", "type": "float" } ] } },
+        { "name": "slope", "type": "gradient", "parameters": { "repeat": 1, "rotate": 0, "gradient": { "type": "Gradient",
+            "points": [ { "pos": 0, "r": 0, "g": 0, "b": 0, "a": 1 }, { "pos": 1, "r": 1, "g": 1, "b": 1, "a": 1 } ] } } },
+        { "name": "low", "type": "mwf_create_map", "parameters": { "height": 0.5, "angle": 0 } },
+        { "name": "ground", "type": "mwf_map", "parameters": {} },
+        { "name": "layers", "type": "mwf_mix", "parameters": {} },
+        { "name": "end", "type": "mwf_output", "parameters": { "param0": 1, "param2": 1 } } ],
+      "connections": [
+        { "from": "tint", "from_port": 0, "to": "ground", "to_port": 1 },
+        { "from": "low", "from_port": 0, "to": "ground", "to_port": 0 },
+        { "from": "ground", "from_port": 0, "to": "layers", "to_port": 0 },
+        { "from": "tint", "from_port": 0, "to": "layers", "to_port": 1 },
+        { "from": "slope", "from_port": 0, "to": "layers", "to_port": 5 },
+        { "from": "layers", "from_port": 1, "to": "end", "to_port": 1 },
+        { "from": "layers", "from_port": 0, "to": "end", "to_port": 0 },
+        { "from": "end", "from_port": 0, "to": "Material", "to_port": 0 },
+        { "from": "end", "from_port": 6, "to": "Material", "to_port": 6 } ] }"#;
+    let imported = read(Format::MaterialMaker, text, &[], &[]);
+    assert_eq!(imported.summary(), "2 of 2 outputs");
+    let decoded = |x: f32| ((x + 0.055) / 1.055).powf(2.4);
+    // At u = .375 the tint is half of both; the ground lies at 1/2, above the slope.
+    let middle = decoded(0.5);
+    close(&at(&imported, [0.375, 0.2]), &[middle, middle, middle, 0.5]);
+    // At u = .75 the slope is higher, and has no colour.
+    close(&at(&imported, [0.75, 0.2]), &[0.0, 0.0, 0.0, 0.25]);
 }

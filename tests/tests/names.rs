@@ -1,8 +1,9 @@
-//! Whatever a graph, its nodes, inputs and outputs are called, every target compiles with every entry.
+//! Whatever a graph, its nodes, inputs and outputs are called, every target compiles with every entry;
+//! and names that other programs have for ports and nodes are answered.
 
 use mipless::target::{Target, validate};
 use mipless::wgsl::{Entry, Options as Emission, Shader, emit};
-use mipless::{Method, Options, Texture};
+use mipless::{CheckOptions, Method, NoFiles, Options, Texture};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
@@ -184,4 +185,59 @@ fn a_graph_whose_parts_are_called_as_anything_compiles_for_every_target() {
         names.len(),
         wrong.join("\n")
     );
+}
+
+/// The help of the only mistake of a graph of one node.
+fn help(node: &str) -> String {
+    let text = format!(
+        r#"{{ "version": 1, "nodes": {{ "n": {node} }}, "outputs": {{ "out": {{ "node": "n" }} }} }}"#
+    );
+    let mistakes = Texture::with_name("n", &text, &CheckOptions::default(), &NoFiles);
+    let mistakes = mistakes.expect_err("there is a mistake");
+    assert_eq!(mistakes.len(), 1, "{mistakes:?}");
+    mistakes[0].help.clone().unwrap_or_default()
+}
+
+#[test]
+fn ports_of_other_programs_are_told_their_name_here_and_nodes_what_to_do_instead() {
+    for (node, port) in [
+        (
+            r#"{ "type": "noise2d", "inputs": { "scale": 3 } }"#,
+            "frequency",
+        ),
+        (
+            r#"{ "type": "fractal2d", "inputs": { "Detail": 3 } }"#,
+            "octaves",
+        ),
+        (
+            r#"{ "type": "fractal2d", "inputs": { "Roughness": 0.5 } }"#,
+            "diminish",
+        ),
+        (r#"{ "type": "mix", "inputs": { "Fac": 0.5 } }"#, "mix"),
+        (
+            r#"{ "type": "checkerboard", "inputs": { "scale": 3 } }"#,
+            "uvtiling",
+        ),
+        (
+            r#"{ "type": "worleynoise2d", "inputs": { "randomness": 1 } }"#,
+            "jitter",
+        ),
+        (r#"{ "type": "add", "inputs": { "A": 1 } }"#, "in1"),
+    ] {
+        assert_eq!(help(node), format!("here it is called `{port}`"));
+    }
+    // A name that is nearly right is still told.
+    assert_eq!(
+        help(r#"{ "type": "noise2d", "inputs": { "freqency": 3 } }"#),
+        "did you mean `frequency`?"
+    );
+    for (node, answer) in [
+        ("Tile Sampler", "worleynoise2d"),
+        ("fresnel", "direction of view"),
+        ("time", "input of the graph"),
+        ("ambient_occlusion", "blur"),
+    ] {
+        let help = help(&format!(r#"{{ "type": "{node}" }}"#));
+        assert!(help.contains(answer), "{node}: {help}");
+    }
 }

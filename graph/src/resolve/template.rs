@@ -197,7 +197,7 @@ fn kind(
         context.report(diagnostic.at(at).in_node(node).help_if(help));
         return Kind::Broken;
     }
-    let help = context.nearest_type(&entry.ty);
+    let help = super::synonym::node(&entry.ty).or_else(|| context.nearest_type(&entry.ty));
     let help = help.or_else(|| {
         let graph = document.graphs.get_full(&entry.ty)?.1;
         Some(format!("the sub-graph is used as `graph:{graph}`"))
@@ -240,10 +240,11 @@ fn wires<'d>(
         };
         let Some(position) = position else {
             let help = match node.kind {
-                Kind::Spec(spec) => context.nearest(
-                    port,
-                    context.specs[spec].inputs.iter().map(|port| port.name),
-                ),
+                Kind::Spec(spec) => {
+                    let spec = context.specs[spec];
+                    let names = spec.inputs.iter().map(|port| port.name);
+                    super::synonym::port(port, spec).or_else(|| context.nearest(port, names))
+                }
                 Kind::Graph(graph) => {
                     let names = document.graphs[graph - 1].inputs.keys();
                     context.nearest(port, names.map(String::as_str))

@@ -2,7 +2,7 @@
 
 use super::{Builder, Refusal};
 use crate::value::{Link, Literal, Value};
-use mipless_graph::Type;
+use mipless_graph::{Binding, Type};
 
 impl Builder {
     /// A value as another type, by the rules of MaterialX's `convert`.
@@ -77,6 +77,11 @@ impl Builder {
             let message = format!("there is no component {index}");
             Refusal::new("import-type", message)
         };
+        if let Value::Link(link) = value
+            && let Some(part) = self.combined_from(link, index)
+        {
+            return Ok(part);
+        }
         match value {
             Value::Literal(Literal::Matrix(numbers)) => {
                 let size = numbers.len().isqrt();
@@ -102,6 +107,27 @@ impl Builder {
             }
             Value::Link(_) => Err(beyond()),
         }
+    }
+
+    /// What a component was, of numbers that were combined: an input of the node that did.
+    fn combined_from(&self, link: &Link, index: usize) -> Option<Value> {
+        let Binding::Node(reference) = &link.binding else {
+            return None;
+        };
+        let node = self.document.body.nodes.get(&reference.node)?;
+        let count = link.ty.components();
+        // As many inputs as components: each is a number.
+        if node.ty != format!("combine{count}") || index >= count {
+            return None;
+        }
+        let binding = node.inputs.get(&format!("in{}", index + 1))?;
+        Some(match binding {
+            Binding::Value(json) => Value::float(json.as_f64()?),
+            binding => Value::Link(Link {
+                binding: binding.clone(),
+                ty: Type::Float,
+            }),
+        })
     }
 
     /// Numbers as a value of a type with as many components.

@@ -14,7 +14,7 @@ pub(super) struct NodeCall<'m, 'a> {
     pub(super) maker: &'m mut Maker<'a>,
     pub(super) port: &'m PortOf,
     pub(super) kind: &'m str,
-    pub(super) signature: Option<&'static Signature>,
+    pub(super) signature: Option<&'m Signature>,
     pub(super) uv: Value,
     pub(super) hint: String,
     pub(super) place: Place,
@@ -191,6 +191,11 @@ impl Call for NodeCall<'_, '_> {
 
     fn output(&self) -> (Type, &str) {
         (Type::Color3, "out")
+    }
+
+    fn tool_seed(&self) -> Option<i32> {
+        let seed = (self.maker.graphs).tool_seed(self.port.graph, &self.port.node)?;
+        i32::try_from(seed).ok()
     }
 
     fn seed(&self) -> i32 {

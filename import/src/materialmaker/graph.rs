@@ -1,7 +1,7 @@
 //! The graphs of a document: nodes by name, connections, and which graph stands in which.
 
 use super::PortOf;
-use crate::json::Json;
+use crate::json::{Content, Json};
 use crate::place::Place;
 use rustc_hash::FxHashMap;
 
@@ -98,7 +98,7 @@ impl<'a> Graphs<'a> {
         Some((name, place))
     }
 
-    fn node(&self, graph: usize, name: &str) -> Option<&'a Json> {
+    pub(super) fn node(&self, graph: usize, name: &str) -> Option<&'a Json> {
         self.0.get(graph)?.nodes.get(name).copied()
     }
 
@@ -164,6 +164,48 @@ impl<'a> Graphs<'a> {
         let outer = self.0.get(graph)?.outer;
         let given = outer.and_then(|(outer, node)| self.parameter(outer, node, name));
         given.or_else(|| self.parameter(graph, "gen_parameters", name))
+    }
+
+    /// The seed that Material Maker gives a node: what the document says, or a number made of where the
+    /// node lies, and on top of it those of the graphs around it; nothing where it is no whole number.
+    pub(super) fn tool_seed(&self, graph: usize, node: &str) -> Option<i64> {
+        let json = self.node(graph, node)?;
+        let number = |key: &str| json.get(key).and_then(Json::number);
+        let whole = |x: f64| (x.fract() == 0.0 && x.abs() < 1e9).then_some(x as i64);
+        let flag = |key: &str| match json.get(key).map(|json| &json.value) {
+            Some(Content::Bool(flag)) => Some(*flag),
+            _ => None,
+        };
+        let mut locked = flag("seed_locked").unwrap_or(false);
+        let own = if let Some(seed) = number("seed_int") {
+            // A part of 2³², which is a whole number where it is none of it.
+            (seed == 0.0).then_some(0)?
+        } else if let Some(seed) = number("seed") {
+            whole(seed)?
+        } else if let Some(seed) = number("seed_value") {
+            locked = true;
+            whole(seed)?
+        } else {
+            let place = json.get("node_position");
+            let axis = |key: &str| {
+                let place = place
+                    .and_then(|place| place.get(key))
+                    .and_then(Json::number);
+                place.unwrap_or(0.0).clamp(-1e9, 1e9) as i64
+            };
+            ((axis("x") * 0x1f1f_1f1f) ^ axis("y")) % 65_536
+        };
+        let around = (self.0.get(graph)?.outer)
+            .filter(|(outer, node)| {
+                let node = self.node(*outer, node);
+                let transmits = node.and_then(|node| node.get("transmits_seed"));
+                !transmits.is_some_and(|json| json.value == Content::Bool(false))
+            })
+            .filter(|_| !locked);
+        Some(match around {
+            Some((outer, node)) => own + self.tool_seed(outer, node)?,
+            None => own,
+        })
     }
 
     /// The number from which a node's noises are counted.

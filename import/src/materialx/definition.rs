@@ -102,6 +102,12 @@ impl Definitions {
         self.by_name.get(name).map(|index| &self.all[*index])
     }
 
+    /// The definitions of a node.
+    pub(crate) fn of_category(&self, node: &str) -> impl Iterator<Item = &Definition> + use<'_> {
+        let indices = self.by_node.get(node).map_or(&[][..], Vec::as_slice);
+        indices.iter().map(|index| &self.all[*index])
+    }
+
     pub(crate) fn knows(&self, node: &str) -> bool {
         self.by_node.contains_key(node)
     }

@@ -12,7 +12,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     category: Category::Color,
     summary: "One layer over another, which do not overlap while there is room.",
     doc: Doc {
-        computes: composition!("(F + B, f + b) where f + b ≤ 1, else (F + B (1 − f)/b, 1)"),
+        computes: composition!(
+            "(F + B, f + b) where f + b ≤ 1, else (F + B (1 − f)/b, 1), of which the colour is 0 where b is"
+        ),
         statistics: "The quotient and the minimum as `divide` and `min`, then a product with the \
             covariance. Approximate where the alphas vary.",
         accuracy: "For alphas at least four standard deviations above 0 the mean is within 0.005 and the \
@@ -30,6 +32,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     example: layered!("disjointover"),
 };
 
+/// MaterialX's smallest divisor.
+const EMPTY: f32 = 1e-6;
+
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     composite(lower, node, |lower, fg, bg, k| {
         let one = Signal::constant(lower.b(), 1.0);
@@ -37,12 +42,16 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
             return lower.algebra.minimum(&(&fg[3] + &bg[3]), &one);
         }
         let share = quotient(lower, &(&one - &fg[3]), &bg[3]);
-        let share = if fg[3].is_certain() && bg[3].is_certain() {
-            let room = (fg[3].flat_mean() + bg[3].flat_mean()).le(1.0);
-            Signal::certain(room.select(1.0, share.flat_mean()))
-        } else {
-            lower.algebra.minimum(&share, &one)
-        };
-        &fg[k] + product(lower, &bg[k], &share)
+        if !(fg[3].is_certain() && bg[3].is_certain()) {
+            let share = lower.algebra.minimum(&share, &one);
+            return &fg[k] + product(lower, &bg[k], &share);
+        }
+        let (front, behind) = (fg[3].flat_mean(), bg[3].flat_mean());
+        let room = (front + behind).le(1.0);
+        let share = Signal::certain(room.select(1.0, share.flat_mean()));
+        let sum = &fg[k] + product(lower, &bg[k], &share);
+        // Without room and without an alpha behind, MaterialX's shader gives no colour.
+        let some = behind.abs().lt(EMPTY).select(0.0, 1.0);
+        sum * room.select(1.0, some)
     })
 }

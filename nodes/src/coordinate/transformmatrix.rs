@@ -5,7 +5,8 @@ use crate::port::any;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{
-    Behaviour, Category, Default, Doc, Node, NodeSpec, OutputType, PortSpec, PortType, Reach,
+    Behaviour, Category, Default, Doc, InputView, Interval, Node, NodeSpec, OutputType, PortSpec,
+    PortType, Reach,
 };
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
@@ -33,7 +34,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         ),
     ],
     output: OutputType::Whole,
-    reach: |_| Reach::ANY,
+    reach,
     class: |_| Behaviour::Linear,
     example: example! { "transformmatrix" => "board", r#"
     "uv": { "type": "texcoord" },
@@ -43,10 +44,36 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
+/// How many rows a matrix of so many numbers has.
+const fn rows(numbers: usize) -> usize {
+    if numbers == 9 { 3 } else { 4 }
+}
+
+/// The same sums as [`lower`] has: what a column leaves out is not looked at, so that w of a point
+/// stays 1.
+fn reach(inputs: &dyn InputView) -> Reach {
+    let (matrix, vector) = (inputs.matrix("mat"), inputs.reach("in"));
+    let (rows, components) = (rows(matrix.len()), inputs.components("in"));
+    let mut out = vector;
+    for i in 0..components.min(rows) {
+        out.0[i] = (0..rows)
+            .map(|j| {
+                let component = match vector.0.get(j) {
+                    Some(component) if j < components => *component,
+                    _ => Interval::point(1.0),
+                };
+                component * Interval::point(matrix[rows * j + i])
+            })
+            .reduce(|sum, term| sum + term)
+            .unwrap_or(Interval::ANY);
+    }
+    out
+}
+
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let vector = lower.bundle(node, "in");
     let matrix = lower.matrix(node, "mat");
-    let rows = if matrix.len() == 9 { 3 } else { 4 };
+    let rows = rows(matrix.len());
     let one = Signal::constant(lower.b(), 1.0);
     let component = |i: usize| {
         let terms = (0..rows).map(|j| vector.get(j).unwrap_or(&one) * matrix[rows * j + i]);

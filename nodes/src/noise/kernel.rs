@@ -61,6 +61,12 @@ impl Kernel {
         if let Self::Quintic(Kind::Materialx(byte)) = self {
             literals.push(u32::from(byte));
         }
+        if let Self::Quintic(Kind::Materialmaker { seed }) = self {
+            literals.push(seed as u32);
+        }
+        if octaves.ratio != 1.0 {
+            literals.push(octaves.ratio.to_bits());
+        }
         let of = NodeRule {
             name: match self {
                 Self::Gaussian => "lattice_noise",

@@ -92,6 +92,7 @@ pub(crate) fn one_octave(seed: i32, period: i32) -> Octaves {
         diminish: 1.0,
         seed,
         period: period.max(0) as u32,
+        ratio: 1.0,
         hash: Hash::Mipless,
     }
 }

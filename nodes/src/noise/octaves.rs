@@ -59,6 +59,7 @@ pub(crate) fn octaves(lower: &Lower<'_, '_>, node: &Node) -> Octaves {
         diminish: lower.float(node, "diminish"),
         seed: lower.integer(node, "seed"),
         period: 0,
+        ratio: 1.0,
         hash: Hash::Mipless,
     }
 }

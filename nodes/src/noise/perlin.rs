@@ -28,13 +28,16 @@ use super::sum::{Octaves, footprint_scale, parts};
 use super::window::{count, start};
 use energy::{Footprint, energies};
 use fit::{Fit, Shape};
-use grid::Grid;
+use grid::{Grid, Tiles};
 use mipless_codegen::Lower;
 use mipless_codegen::ir::{Builder, Float, FunctionRef, Module, Sym2, Uint, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
 
 /// ∫ w² = 181/231.
 pub(super) const WINDOW_ENERGY: f32 = 0.783_549_8;
+
+/// That of the cubic window: 26/35.
+pub(super) const CUBIC_ENERGY: f32 = 26.0 / 35.0;
 
 /// ∫ t² w².
 pub(super) const WINDOW_MOMENT: f32 = 0.059_385_06;
@@ -61,6 +64,11 @@ pub(crate) enum Kind {
     Value,
     /// One of eight directions by a byte of MaterialX's hash.
     Materialx(u8),
+    /// A number by Material Maker's hash, with the cubic window 1 − 3t² + 2|t|³ in place of the quintic.
+    Materialmaker {
+        /// The node's seed, which is hashed where the shader is made.
+        seed: i32,
+    },
 }
 
 impl Kind {
@@ -69,7 +77,7 @@ impl Kind {
     const fn terms(self) -> &'static [[usize; 2]] {
         match self {
             Self::Gradient | Self::Materialx(_) => &[[1, 0], [0, 1]],
-            Self::Value => &[[0, 0]],
+            Self::Value | Self::Materialmaker { .. } => &[[0, 0]],
         }
     }
 
@@ -77,7 +85,7 @@ impl Kind {
     fn weights(self, hash: Uint<'_>) -> Vec<Float<'_>> {
         match self {
             Self::Gradient => compass(hash).to_vec(),
-            Self::Value => vec![signed(hash)],
+            Self::Value | Self::Materialmaker { .. } => vec![signed(hash)],
             Self::Materialx(byte) => jenkins::gradient(hash >> (8 * u32::from(byte))).to_vec(),
         }
     }
@@ -91,6 +99,7 @@ impl Kind {
                 1.0 / (COMPASS_LENGTH * energy.sqrt())
             }
             Self::Value => 3.0f32.sqrt() / (WINDOW_ENERGY * (1u32 << 31) as f32),
+            Self::Materialmaker { .. } => 3.0f32.sqrt() / (CUBIC_ENERGY * (1u32 << 31) as f32),
         }
     }
 
@@ -108,6 +117,7 @@ impl Kind {
         match self {
             Self::Gradient | Self::Materialx(_) => 1.70,
             Self::Value => 3.144,
+            Self::Materialmaker { .. } => 3.31,
         }
     }
 
@@ -119,6 +129,8 @@ impl Kind {
             // MaterialX's directions have the second moments of a circle's.
             Self::Gradient | Self::Materialx(_) => (1, 0.119_27),
             Self::Value => (0, 0.137_12),
+            // ∫ w′² = 12/5 of the cubic window: 3.2308 a cell².
+            Self::Materialmaker { .. } => (0, 0.154_76),
         }
     }
 
@@ -128,6 +140,7 @@ impl Kind {
             Self::Materialx(_) => "materialx_noise",
             Self::Gradient => "perlin_noise",
             Self::Value => "value_noise",
+            Self::Materialmaker { .. } => "materialmaker_noise",
         }
     }
 
@@ -135,6 +148,7 @@ impl Kind {
         match self {
             Self::Gradient | Self::Materialx(_) => fit::GRADIENT,
             Self::Value => fit::VALUE,
+            Self::Materialmaker { .. } => fit::CUBIC,
         }
     }
 
@@ -142,7 +156,25 @@ impl Kind {
     const fn length(self) -> f32 {
         match self {
             Self::Gradient | Self::Materialx(_) => fit::GRADIENT.width,
-            Self::Value => 1.0,
+            Self::Value | Self::Materialmaker { .. } => 1.0,
+        }
+    }
+
+    /// The window and its derivatives by |t|.
+    fn window(self, t: Float<'_>) -> Vec<Float<'_>> {
+        match self {
+            Self::Materialmaker { .. } => profile::cubic(t),
+            _ => profile::window(t),
+        }
+    }
+
+    /// From and up to which standard deviation, in cells, the polynomials of the window give way to
+    /// its fit. Those of the cubic window are off by its jumps of w″ at the lattice lines, with the
+    /// square of the footprint.
+    const fn handover(self) -> [f32; 2] {
+        match self {
+            Self::Materialmaker { .. } => [0.05, 0.08],
+            _ => HANDOVER,
         }
     }
 
@@ -151,6 +183,7 @@ impl Kind {
             Self::Materialx(_) => "materialx",
             Self::Gradient => "perlin",
             Self::Value => "value",
+            Self::Materialmaker { .. } => "materialmaker",
         }
     }
 }
@@ -173,7 +206,8 @@ pub(crate) fn filtered<'b>(
     } = octaves;
     let tiles = octaves.tiles();
     let name = kind.name();
-    let key = format!("{name} {kind:?} {mode:?} {lacunarity} {diminish} {tiles}");
+    let ratio = octaves.ratio;
+    let key = format!("{name} {kind:?} {mode:?} {lacunarity} {diminish} {tiles} {ratio}");
     let octave = lower.function(&key, |module| match mode {
         Mode::Point => point::octave(module, kind, octaves),
         _ => filtered_octave(module, kind, mode, octaves),
@@ -184,8 +218,8 @@ pub(crate) fn filtered<'b>(
 
 /// One octave of the filtered noise, the body of a fold.
 fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves) -> FunctionRef {
-    let near = near::sums(module, kind, mode, octaves.tiles());
-    let row = window::row(module, kind, mode, octaves.tiles());
+    let near = near::sums(module, kind, mode, Tiles::of(octaves));
+    let row = window::row(module, kind, mode, Tiles::of(octaves));
     let parts = parts(mode);
     let doc = "One more octave of the filtered noise.";
     let b = &Builder::new(format!("{}_octave", kind.name()), doc);
@@ -208,7 +242,8 @@ fn filtered_octave(module: &mut Module, kind: Kind, mode: Mode, octaves: Octaves
     };
     let energy = energies(kind, &footprint);
     let width = kind.fit().width;
-    let by_window = share(major.sqrt(), HANDOVER[0], HANDOVER[1]);
+    let [from, to] = kind.handover();
+    let by_window = share(major.sqrt(), from, to);
     let by_near = 1.0 - by_window;
 
     // Polynomials of the window.

@@ -2,7 +2,7 @@
 
 mod octave;
 
-pub(super) use octave::Octave;
+pub(super) use octave::{Octave, along};
 
 use super::components::Hash;
 use super::field::Field;
@@ -26,6 +26,8 @@ pub(crate) struct Octaves {
     pub(crate) seed: i32,
     /// After how many cells of the first octave the lattice repeats; 0 if it does not.
     pub(crate) period: u32,
+    /// How many times as far it repeats along v.
+    pub(crate) ratio: f32,
     /// Which hash decides: with MaterialX's all octaves share one lattice.
     pub(crate) hash: Hash,
 }

@@ -42,6 +42,12 @@ pub(super) const VALUE: Fit = Fit {
     coefficients: [1.002_915_8, 2.332_713_3, -6.760_1, 3.179_95],
 };
 
+/// Value noise with the cubic window: the noise differs by 0.0209 of its standard deviation.
+pub(super) const CUBIC: Fit = Fit {
+    width: 0.4325,
+    coefficients: [0.980_097_6, 0.384_338_7, -2.077_853_3, 0.819_219_8],
+};
+
 /// What is random at a lattice point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Weight<'b, const D: usize> {

@@ -3,9 +3,20 @@
 use super::Kind;
 use crate::noise::hash::{AXES, corner, word};
 use crate::noise::jenkins;
-use crate::noise::sum::Octave;
+use crate::noise::sum::{Octave, Octaves, along};
 use crate::noise::tile::wrapped;
+use crate::noise::trigonometric;
 use mipless_codegen::ir::{Builder, Float, Int, Scalar, Scalars, Uint};
+
+/// Whether a lattice repeats, and how many times as far along y.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tiles(bool, f32);
+
+impl Tiles {
+    pub(super) fn of(octaves: Octaves) -> Self {
+        Self(octaves.tiles(), octaves.ratio)
+    }
+}
 
 /// The lattice around a position.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +25,8 @@ pub(super) struct Grid<'b> {
     seed: Uint<'b>,
     /// After how many cells (a real) it repeats; the position's cell then lies in the period.
     period: Option<Float<'b>>,
+    /// How many times as far it repeats along y.
+    ratio: f32,
     kind: Kind,
 }
 
@@ -24,16 +37,18 @@ impl<'b> Grid<'b> {
             cells: state.cells,
             seed: state.seed,
             period: state.period,
+            ratio: state.ratio,
         }
     }
 
     /// The parameters of a function that takes it over.
-    pub(super) fn declare(b: &'b Builder, kind: Kind, tiles: bool) -> Self {
+    pub(super) fn declare(b: &'b Builder, kind: Kind, tiles: Tiles) -> Self {
         Self {
             kind,
             cells: ["cell_x", "cell_y"].map(|name| b.int_param(name)),
             seed: b.uint_param("seed"),
-            period: tiles.then(|| b.float_param("period")),
+            period: tiles.0.then(|| b.float_param("period")),
+            ratio: tiles.1,
         }
     }
 
@@ -46,7 +61,7 @@ impl<'b> Grid<'b> {
     /// The word of a line.
     fn mixed(&self, line: Uint<'b>) -> Uint<'b> {
         match self.kind {
-            Kind::Materialx(_) => line,
+            Kind::Materialx(_) | Kind::Materialmaker { .. } => line,
             _ => word(line),
         }
     }
@@ -55,6 +70,10 @@ impl<'b> Grid<'b> {
     pub(super) fn corner(&self, column: Uint<'b>, row: Uint<'b>) -> Uint<'b> {
         match self.kind {
             Kind::Materialx(_) => jenkins::plane([column, row], self.seed),
+            Kind::Materialmaker { seed } => {
+                let place = [column, row].map(|line| line.to_int());
+                trigonometric::plane(place, seed)
+            }
             _ => corner(column, row),
         }
     }
@@ -62,7 +81,7 @@ impl<'b> Grid<'b> {
     /// What a step along an axis adds to a line.
     fn factor(&self, axis: usize) -> u32 {
         match self.kind {
-            Kind::Materialx(_) => 1,
+            Kind::Materialx(_) | Kind::Materialmaker { .. } => 1,
             _ => AXES[axis],
         }
     }
@@ -72,11 +91,14 @@ impl<'b> Grid<'b> {
         let cell = self.cells[axis];
         let place = match self.period {
             None => cell + offset.to_int(),
-            Some(period) => wrapped(cell.to_float() + offset, period).to_int(),
+            Some(period) => {
+                let period = along(axis, period, self.ratio);
+                wrapped(cell.to_float() + offset, period).to_int()
+            }
         };
         let line = place.to_uint() * self.factor(axis);
         match self.kind {
-            Kind::Materialx(_) => line,
+            Kind::Materialx(_) | Kind::Materialmaker { .. } => line,
             _ if axis == 1 => line + self.seed,
             _ => line,
         }

@@ -1,7 +1,7 @@
 //! The noise over a footprint that is narrow against a cell: polynomials, exact at a point.
 
-use super::grid::Grid;
-use super::profile::{DERIVATIVES, joint, quintic};
+use super::grid::{Grid, Tiles};
+use super::profile::{DERIVATIVES, joint, profiles};
 use super::{Kind, NAMES};
 use crate::noise::sum::parts;
 use mipless_codegen::ir::{Builder, FunctionRef, Module};
@@ -9,7 +9,7 @@ use mipless_codegen::moments::Mode;
 
 /// The four corners' kernels and their derivatives in cells, the body of a fold of at most one
 /// turn: the state is replaced. Captures: the grid, the fraction and the footprint's covariance.
-pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
+pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: Tiles) -> FunctionRef {
     let doc = "The noise over a footprint that is narrow against a cell.";
     let b = &Builder::new(format!("{}_near", kind.name()), doc);
     b.uint_param("index");
@@ -20,8 +20,11 @@ pub(super) fn sums(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> 
     let fractions = b.float_params(["x", "y"]);
     let [xx, xy, yy] = b.float_params(["s_xx", "s_xy", "s_yy"]);
     let powers = [xy, xy.square() * 0.5];
-    let axes = [(fractions[0], xx), (fractions[1], yy)]
-        .map(|(t, spread)| [quintic(t, false, spread), quintic(1.0 - t, true, spread)]);
+    let axes = [(fractions[0], xx), (fractions[1], yy)].map(|(t, spread)| {
+        let left = profiles(kind.window(t), t, false, spread);
+        let rest = 1.0 - t;
+        [left, profiles(kind.window(rest), rest, true, spread)]
+    });
     let mut totals = vec![b.float(0.0); parts(mode)];
     for (corner, hash) in grid.corners().into_iter().enumerate() {
         let (x, y) = (&axes[0][corner % 2], &axes[1][corner / 2]);

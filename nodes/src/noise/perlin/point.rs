@@ -33,7 +33,10 @@ pub(super) fn octave(module: &mut Module, kind: Kind, octaves: Octaves) -> Funct
             _ => weights[0],
         }
     });
-    let [x, y] = state.fractions.map(fade);
+    let [x, y] = state.fractions.map(|t| match kind {
+        Kind::Materialmaker { .. } => t.square() * (t * -2.0 + 3.0),
+        _ => fade(t),
+    });
     let noise = between(y, [between(x, [c00, c10]), between(x, [c01, c11])]);
     b.result("mean", sum + noise * (state.amplitude * kind.unit()));
     state.advance(b, octaves);

@@ -62,10 +62,27 @@ pub(in crate::noise) fn averaged<'b>(f: &[Float<'b>], c: Float<'b>) -> Vec<Float
         .collect()
 }
 
-/// The polynomials of the window at t in [0, 1] (`negative`: at −t), averaged over a Gaussian of
-/// variance c around t.
-pub(super) fn quintic<'b>(t: Float<'b>, negative: bool, c: Float<'b>) -> Profiles<'b> {
-    let mut w = window(t);
+/// The same of the cubic window, 1 − 3t² + 2|t|³.
+pub(super) fn cubic(t: Float<'_>) -> Vec<Float<'_>> {
+    let zero = t.literal(0.0);
+    vec![
+        t.square() * (t * 2.0 - 3.0) + 1.0,
+        t * (t * 6.0 - 6.0),
+        t * 12.0 - 6.0,
+        t.literal(12.0),
+        zero,
+        zero,
+    ]
+}
+
+/// The polynomials of a window at t in [0, 1] (`negative`: at −t), averaged over a Gaussian of
+/// variance c around t; `w` are the window and its derivatives by |t|.
+pub(super) fn profiles<'b>(
+    mut w: Vec<Float<'b>>,
+    t: Float<'b>,
+    negative: bool,
+    c: Float<'b>,
+) -> Profiles<'b> {
     let mut place = t;
     if negative {
         for odd in [1, 3, 5] {

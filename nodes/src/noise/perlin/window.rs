@@ -2,7 +2,7 @@
 //! product with the footprint. In sums over kernels M is applied once, at the end.
 
 use super::fit::{Shape, Weight};
-use super::grid::Grid;
+use super::grid::{Grid, Tiles};
 use super::{Kind, NAMES};
 use crate::noise::sum::{derivatives, parts};
 use crate::noise::window::{count, start};
@@ -61,7 +61,7 @@ fn sums(b: &Builder, mode: Mode) -> Vec<Float<'_>> {
 }
 
 /// The filtered kernel of one lattice point, the body of a fold over columns.
-fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
+fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: Tiles) -> FunctionRef {
     let doc = "The filtered kernel of one lattice point.";
     let b = &Builder::new(format!("{}_kernel", kind.name()), doc);
     let fit = kind.fit();
@@ -90,7 +90,7 @@ fn kernel(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionR
 pub(super) const COUNTS: [f32; 2] = [2.0, 112.0];
 
 /// One lattice row of filtered kernels, the body of a fold over rows.
-pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: bool) -> FunctionRef {
+pub(super) fn row(module: &mut Module, kind: Kind, mode: Mode, tiles: Tiles) -> FunctionRef {
     let kernel = kernel(module, kind, mode, tiles);
     let doc = "The filtered kernels of one lattice row.";
     let b = &Builder::new(format!("{}_row", kind.name()), doc);

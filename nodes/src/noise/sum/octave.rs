@@ -18,9 +18,21 @@ pub(in crate::noise) struct Octave<'b, const AXES: usize> {
     pub(in crate::noise) seed: Uint<'b>,
     /// In cells of this octave, a real.
     pub(in crate::noise) period: Option<Float<'b>>,
+    /// By what it is multiplied along the second axis.
+    pub(in crate::noise) ratio: f32,
 }
 
 const NAMES: [&str; 3] = ["x", "y", "z"];
+
+/// The period along an axis.
+pub(in crate::noise) fn along<'b>(axis: usize, period: Float<'b>, ratio: f32) -> Float<'b> {
+    if axis == 1 && ratio != 1.0 {
+        // Whole cells, whatever the quotient is rounded to.
+        (period * ratio + 0.5).floor()
+    } else {
+        period
+    }
+}
 
 impl<'b, const AXES: usize> Octave<'b, AXES> {
     /// The first octave at a position in cells of it.
@@ -38,6 +50,7 @@ impl<'b, const AXES: usize> Octave<'b, AXES> {
             amplitude: b.float(1.0),
             seed,
             period: octaves.tiles().then(|| b.float(octaves.period as f32)),
+            ratio: octaves.ratio,
         }
     }
 
@@ -54,10 +67,14 @@ impl<'b, const AXES: usize> Octave<'b, AXES> {
             amplitude: b.float_param("amplitude"),
             seed: b.uint_param("seed"),
             period: octaves.tiles().then(|| b.float_param("period")),
+            ratio: octaves.ratio,
         };
         if let Some(period) = state.period {
             // What repeats must be the same numbers from here on.
-            state.cells = (state.cells).map(|cell| wrapped_cell(cell, period).to_int());
+            for (axis, cell) in state.cells.iter_mut().enumerate() {
+                let period = along(axis, period, octaves.ratio);
+                *cell = wrapped_cell(*cell, period).to_int();
+            }
         }
         state
     }
