@@ -40,11 +40,26 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum)]
     entry: Option<EntryName>,
 
+    /// The group of all bindings
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    group: u32,
+
+    /// The number of the first binding; tables are three behind it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=HIGHEST_BINDING))]
+    binding: u32,
+
+    /// Declare no `Footprint` and `Position`, so that several textures stand in one module (WGSL only)
+    #[arg(long)]
+    shared_footprint: bool,
+
     /// The filter over which a pixel is averaged; deviation in pixels
     #[arg(long, value_name = "gaussian:SD|box", default_value = "gaussian:0.5",
         value_parser = value::pixel_filter)]
     pixel_filter: PixelFilter,
 }
+
+/// Metal and GLSL number their buffers in a byte, of which lengths of arrays take one more.
+const HIGHEST_BINDING: i64 = 250;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum TargetName {
@@ -119,6 +134,15 @@ impl<'a> Job<'a> {
             (Some(EntryName::Compute), _) => Entry::Compute,
             (Some(EntryName::None) | None, None) => Entry::None,
         };
+        if arguments.shared_footprint
+            && let Some(target) = targets.iter().find(|target| **target != Target::Wgsl)
+        {
+            let message = format!(
+                "`--shared-footprint` leaves a struct undeclared, so that there is no {}",
+                target.name()
+            );
+            return Err(Mistake::usage("shared-footprint", message).help("choose `--target wgsl`"));
+        }
         if arguments.out.exists() && !arguments.out.is_dir() {
             let message = format!("{}: it is no folder", arguments.out.display());
             return Err(Mistake::usage("unwritable-file", message));
@@ -153,7 +177,13 @@ impl<'a> Job<'a> {
             ..Options::default()
         };
         let program = texture.compile(&options);
-        let shader = wgsl::emit(&program, &wgsl::Options { entry: self.entry });
+        let emission = wgsl::Options {
+            entry: self.entry,
+            group: self.arguments.group,
+            binding: self.arguments.binding,
+            shared_footprint: self.arguments.shared_footprint,
+        };
+        let shader = wgsl::emit(&program, &emission);
         // Folders take names of 255 bytes.
         let name = &shader.function[..shader.function.len().min(LONGEST_STEM)];
 
@@ -170,7 +200,12 @@ impl<'a> Job<'a> {
                 .help("this is a bug of the compiler; please report it with the graph");
             Mistake::graph(path, vec![diagnostic])
         };
-        let validated = validate(&shader.source).map_err(|error| invalid(error.into()))?;
+        let validated = if emission.shared_footprint {
+            validate(&format!("{}{}", *wgsl::DECLARATIONS, shader.source))
+        } else {
+            validate(&shader.source)
+        };
+        let validated = validated.map_err(|error| invalid(error.into()))?;
         for &target in &self.targets {
             let bytes = validated.translate(&shader, target).map_err(invalid)?;
             let stage = shader.entry_point.as_ref().map(|entry| entry.stage);

@@ -15,7 +15,9 @@
 //! - With [`Interface::moments`](crate::ir::Interface::moments), `base_color_variance` and so on
 //!   follow all means. A boolean parameter is a `u32`, not 0 for true.
 //! - No derivative built-ins and no globals; one binding, [`TABLES_BINDING`], if there are tables.
-//! - Every other name begins with the texture's; none is a reserved word of WGSL, GLSL, HLSL or MSL.
+//!   [`Options`] moves all bindings to another group and to higher numbers.
+//! - Every other name begins with the texture's; none is a reserved word of WGSL, GLSL, HLSL or MSL,
+//!   and none ends in a digit, so that naga's writers and naga_oil leave it as it is.
 //! - No function has more than about 200 statements: long ones call their parts.
 //!
 //! # The compute entry point
@@ -45,14 +47,16 @@ mod part;
 mod reserved;
 mod spelled;
 mod statement;
+mod wrapped;
 
 pub(crate) use gap::Spelled;
 pub use name::identifier;
 
 use crate::ir::{FunctionId, Inst, Numbers, Program, Type};
+pub use entry::DECLARATIONS;
 use entry::{Names, entry_text, face, push_entry_point, push_structs};
 use function::{Context, Signature};
-use name::{Scope, callable, camel};
+use name::{Scope, callable, camel, internal};
 use serde::Serialize;
 
 /// The binding of the footprints, in group 0.
@@ -93,11 +97,27 @@ pub enum Entry {
     Compute,
 }
 
-/// How to emit.
+/// How to emit. The default is the function alone, with its tables at binding 3 of group 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// The entry point.
     pub entry: Entry,
+    /// The group of all bindings.
+    pub group: u32,
+    /// What is added to the numbers of all bindings: the tables are at this + [`TABLES_BINDING`].
+    pub binding: u32,
+    /// Whether `Footprint` and `Position` are declared elsewhere, so that several textures stand in
+    /// one module: the text is valid only behind [`DECLARATIONS`].
+    pub shared_footprint: bool,
+}
+
+impl From<Entry> for Options {
+    fn from(entry: Entry) -> Self {
+        Self {
+            entry,
+            ..Self::default()
+        }
+    }
 }
 
 /// The stage of an entry point.
@@ -298,7 +318,7 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
                 return Some(Signature::of_entry(&names.function));
             }
             reached[index].then(|| {
-                let name = callable(identifier(&format!("{stem}_{}", function.name)));
+                let name = callable(internal(&format!("{stem}_{}", function.name)));
                 let name = globals.take(name);
                 Signature::new(name, function, &mut globals)
             })
@@ -330,7 +350,7 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         table_offsets: &offsets,
         out: String::with_capacity(1024 + 40 * instructions),
     };
-    push_structs(&mut context.out, &names, &face, tables.is_some());
+    push_structs(&mut context.out, &names, &face, tables.is_some(), options);
     let written: Vec<FunctionId> = (0..last)
         .filter(|&index| reached[index])
         .map(FunctionId::from_index)
@@ -345,13 +365,14 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
         ..
     } = context;
     let (entry_point, mut bindings) =
-        push_entry_point(&mut source, &mut globals, options.entry, &names, &face);
+        push_entry_point(&mut source, &mut globals, options, &names, &face);
     source.truncate(source.trim_end().len());
     source.push('\n');
+    let source = wrapped::wrapped(source);
     if tables.is_some() {
         bindings.push(Binding {
-            group: 0,
-            binding: TABLES_BINDING,
+            group: options.group,
+            binding: options.binding + TABLES_BINDING,
             name: names.tables,
             kind: BindingKind::Tables,
         });

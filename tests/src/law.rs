@@ -189,13 +189,13 @@ fn compile(texture: &Texture, method: Method) -> Program {
 
 /// The program's shaders are valid and translate.
 fn shaders(program: &Program, report: &mut Report<'_>) {
-    let bare = emit(program, &Emission { entry: Entry::None });
+    let bare = emit(program, &Entry::None.into());
     if let Err(error) = validate(&bare.source) {
         report(Law::Shader, error.to_string());
         return;
     }
     for entry in [Entry::Fragment, Entry::Compute] {
-        let shader = emit(program, &Emission { entry });
+        let shader = emit(program, &entry.into());
         let validated = match validate(&shader.source) {
             Ok(validated) => validated,
             Err(error) => return report(Law::Shader, error.to_string()),

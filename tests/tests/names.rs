@@ -46,7 +46,7 @@ fn shader(graph: &Value, method: Method, entry: Entry) -> Shader {
         moments: true,
         ..Options::default()
     };
-    emit(&texture.compile(&options), &Emission { entry })
+    emit(&texture.compile(&options), &entry.into())
 }
 
 /// What is wrong with the shaders of a graph: each is valid, and the short ones go to every target.

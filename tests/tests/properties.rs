@@ -56,7 +56,7 @@ fn sound(texture: &Texture, method: Method) -> Result<(), String> {
     let program = texture.compile(&options);
     verify(&program.module).map_err(|violations| violations[0].to_string())?;
     let entry = Entry::Compute;
-    let shader = emit(&program, &Emission { entry });
+    let shader = emit(&program, &entry.into());
     validate(&shader.source).map_err(|error| error.to_string())?;
     let outputs = texture.evaluator(&options).evaluate(&footprints());
     let finite = outputs.iter().flatten().all(|x| x.is_finite());

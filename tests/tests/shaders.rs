@@ -87,11 +87,15 @@ fn targets(case: &Case, method: Method) -> Result<(), Failed> {
         ..Options::default()
     });
     for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
-        let shader = emit(&program, &Emission { entry });
+        let shader = emit(&program, &entry.into());
         let longest = longest_function(&shader.source);
         // naga's front end takes time quadratic in the declarations of one function.
         assert!(longest <= 300, "a function of {longest} statements");
+        let widest = widest(&shader.source);
+        assert!(widest < 160, "a line of {widest} letters");
         let validated = validate(&shader.source)?;
+        let digits = numbered(&shader.source);
+        assert!(digits.is_empty(), "names that end in digits: {digits:?}");
         if entry == Entry::None {
             assert!(
                 !shader.source.contains("dpdx"),
@@ -109,6 +113,22 @@ fn targets(case: &Case, method: Method) -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// The names that end in a digit, which naga's writers and naga_oil change: all but those of WGSL's own
+/// types and functions.
+fn numbered(source: &str) -> Vec<&str> {
+    const OWN: [&str; 7] = ["f32", "i32", "u32", "vec2", "vec3", "log2", "exp2"];
+    let code = source.lines().filter(|line| !line.starts_with("///"));
+    code.flat_map(|line| line.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'))
+        .filter(|word| word.starts_with(|c: char| c.is_ascii_alphabetic()))
+        .filter(|word| word.ends_with(|c: char| c.is_ascii_digit()) && !OWN.contains(word))
+        .collect()
+}
+
+/// The longest line.
+fn widest(source: &str) -> usize {
+    source.lines().map(str::len).max().unwrap_or(0)
 }
 
 /// The number of lines that end a statement in the longest function.
@@ -132,7 +152,7 @@ fn compile(case: &Case, compiler: Compiler, methods: &[Method]) -> Result<(), Fa
             (Entry::Fragment, Stage::Fragment),
             (Entry::Compute, Stage::Compute),
         ] {
-            let shader = emit(&program, &Emission { entry });
+            let shader = emit(&program, &entry.into());
             let translated = translate(&shader, compiler.target)?;
             let extension = compiler.target.extension(Some(stage));
             let file = folder

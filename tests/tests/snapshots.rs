@@ -64,7 +64,7 @@ fn every_graph_compiles_to_what_it_did() {
                 let program = compile(&case.texture, method);
                 let text = match what {
                     "ir" => ir_text(&program),
-                    _ => emit(&program, &Emission { entry: Entry::None }).source,
+                    _ => emit(&program, &Entry::None.into()).source,
                 };
                 insta::assert_snapshot!(name_of_snapshot(&case, method, what), text);
             }
@@ -96,15 +96,7 @@ fn compilation_is_deterministic() {
                 "{} by {method}: two programs",
                 case.name
             );
-            let texts = programs.map(|program| {
-                emit(
-                    &program,
-                    &Emission {
-                        entry: Entry::Compute,
-                    },
-                )
-                .source
-            });
+            let texts = programs.map(|program| emit(&program, &Entry::Compute.into()).source);
             assert!(
                 texts[0] == texts[1],
                 "{} by {method}: two shaders",

@@ -273,6 +273,14 @@ impl Core {
             Op::Min | Op::Max | Op::MinI | Op::MaxI | Op::MinU | Op::And | Op::Or if a == b => {
                 Some(a)
             }
+            Op::And | Op::Or => {
+                // The truth value that leaves the other one as it is.
+                let neutral = u32::from(op == Op::And);
+                let other = |constant: Option<Constant>, kept: Value, known: Value| {
+                    constant.map(|c| if c.bits == neutral { kept } else { known })
+                };
+                other(constants[0], b, a).or_else(|| other(constants[1], a, b))
+            }
             Op::AddI | Op::AddU | Op::XorU | Op::OrU => {
                 if constants[0].is_some_and(|c| c.bits == 0) {
                     Some(b)

@@ -107,8 +107,8 @@ pub fn translate(shader: &Shader, target: Target) -> Result<Translated, Translat
 impl Validated {
     /// Translates the shader that this is naga's form of; for several targets it is read once.
     /// Bindings keep their numbers: GLSL's `binding`, HLSL's registers (space 0), Metal's buffer
-    /// indices. Metal's compute shaders read the byte lengths of their arrays from buffer 8, in the
-    /// order of the bindings.
+    /// indices. Metal's compute shaders read the byte lengths of their arrays from buffer 8, or from
+    /// the one behind the last binding if that is higher, in the order of the bindings.
     ///
     /// # Errors
     /// If the target needs an entry point that the shader has not, or naga's back end rejects it.
@@ -188,7 +188,7 @@ impl Validated {
                 });
                 let slots = msl::EntryPointResources {
                     resources: resources.collect(),
-                    sizes_buffer: Some(8),
+                    sizes_buffer: Some(sizes_buffer(shader)),
                     ..msl::EntryPointResources::default()
                 };
                 let options = msl::Options {
@@ -207,6 +207,12 @@ impl Validated {
             }
         }
     }
+}
+
+/// Where Metal's shaders read the byte lengths of their arrays: behind all bindings.
+fn sizes_buffer(shader: &Shader) -> u8 {
+    let last = shader.bindings.iter().map(|b| b.binding).max();
+    last.map_or(8, |last| last.max(7) as u8 + 1)
 }
 
 #[cfg(test)]

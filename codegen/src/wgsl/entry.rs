@@ -3,11 +3,13 @@
 use super::function::EntryText;
 use super::name::{Scope, identifier};
 use super::{
-    Binding, BindingKind, Entry, EntryPoint, FOOTPRINTS_BINDING, OUTPUTS_BINDING, OutputField,
-    PARAMETERS_BINDING, PIXELS_PER_ROW, ParameterField, Stage, TABLES_BINDING, WORKGROUP_SIZE,
+    Binding, BindingKind, Entry, EntryPoint, FOOTPRINTS_BINDING, OUTPUTS_BINDING, Options,
+    OutputField, PARAMETERS_BINDING, PIXELS_PER_ROW, ParameterField, Stage, TABLES_BINDING,
+    WORKGROUP_SIZE,
 };
 use crate::ir::{Program, Type};
 use std::fmt::Write;
+use std::sync::LazyLock;
 
 /// How the entry spells the eight scalars of the footprint.
 const FOOTPRINT_PATHS: [&str; 8] = [
@@ -160,19 +162,49 @@ pub(super) fn face(program: &Program) -> Face {
     }
 }
 
+/// The struct of the footprint.
+const FOOTPRINT: &str = "\
+/// Where a pixel lies in texture space: its centre at cell + uv, the change of uv to the next
+/// pixel on the right (du) and below (dv).
+struct Footprint {
+    cell: vec2i,
+    uv: vec2f,
+    du: vec2f,
+    dv: vec2f,
+}
+
+";
+
+/// The struct of the position in space.
+const POSITION: &str = "\
+/// Where a pixel lies in space: its centre at cell + xyz, the change to the next pixel on the
+/// right (dx) and below (dy).
+struct Position {
+    cell: vec3i,
+    xyz: vec3f,
+    dx: vec3f,
+    dy: vec3f,
+}
+
+";
+
+/// What every texture of a module reads: the structs `Footprint` and `Position`, for shaders that do
+/// not declare them ([`Options::shared_footprint`]).
+pub static DECLARATIONS: LazyLock<String> = LazyLock::new(|| format!("{FOOTPRINT}{POSITION}"));
+
 /// Appends `Footprint`, the structs of parameters and outputs, and the array of tables.
-pub(super) fn push_structs(out: &mut String, names: &Names, face: &Face, tables: bool) {
-    out.push_str(
-        "/// Where a pixel lies in texture space: its centre at cell + uv, the change of uv to the next\n\
-         /// pixel on the right (du) and below (dv).\n\
-         struct Footprint {\n    cell: vec2i,\n    uv: vec2f,\n    du: vec2f,\n    dv: vec2f,\n}\n\n",
-    );
-    if face.position {
-        out.push_str(
-            "/// Where a pixel lies in space: its centre at cell + xyz, the change to the next pixel on the\n\
-             /// right (dx) and below (dy).\n\
-             struct Position {\n    cell: vec3i,\n    xyz: vec3f,\n    dx: vec3f,\n    dy: vec3f,\n}\n\n",
-        );
+pub(super) fn push_structs(
+    out: &mut String,
+    names: &Names,
+    face: &Face,
+    tables: bool,
+    options: &Options,
+) {
+    if !options.shared_footprint {
+        out.push_str(FOOTPRINT);
+        if face.position {
+            out.push_str(POSITION);
+        }
     }
     let mut push = |name: &str, fields: &mut dyn Iterator<Item = (&str, String)>| {
         out.push_str("struct ");
@@ -196,7 +228,9 @@ pub(super) fn push_structs(out: &mut String, names: &Names, face: &Face, tables:
     if tables {
         writeln!(
             out,
-            "@group(0) @binding({TABLES_BINDING}) var<storage, read> {}: array<f32>;\n",
+            "@group({}) @binding({}) var<storage, read> {}: array<f32>;\n",
+            options.group,
+            options.binding + TABLES_BINDING,
             names.tables
         )
         .expect("a string takes all text");
@@ -269,20 +303,22 @@ fn as_f32(scalar: Type, path: &str) -> String {
 pub(super) fn push_entry_point(
     out: &mut String,
     scope: &mut Scope,
-    entry: Entry,
+    options: &Options,
     names: &Names,
     face: &Face,
 ) -> (Option<EntryPoint>, Vec<Binding>) {
+    let (entry, group) = (options.entry, options.group);
     let mut bindings = Vec::new();
     let mut declare = |out: &mut String, binding, kind, words: &str, space: &str, ty: &str| {
         let name = scope.take(format!("{}_{words}", names.function));
+        let binding = options.binding + binding;
         writeln!(
             out,
-            "@group(0) @binding({binding}) var<{space}> {name}: {ty};"
+            "@group({group}) @binding({binding}) var<{space}> {name}: {ty};"
         )
         .expect("a string takes all text");
         bindings.push(Binding {
-            group: 0,
+            group,
             binding,
             name: name.clone(),
             kind,

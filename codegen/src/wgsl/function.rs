@@ -3,8 +3,8 @@
 mod body;
 mod local;
 
-use super::expression::{level, push_number};
-use super::name::{Scope, camel, identifier};
+use super::expression::level;
+use super::name::{Scope, camel, capitals, internal, push_letters};
 use super::part::{Item, Part, split};
 use super::statement::{self, Statements, choose, is_single};
 use crate::ir::{Function, FunctionId, Inst, Module, Type, Value};
@@ -57,7 +57,7 @@ impl Signature {
             packed: is_packed(function.params.len()).then(|| globals.take(format!("{camel}Args"))),
             results: (function.results.len() > 1).then(|| globals.take(camel.clone())),
             fields: (function.results.iter())
-                .map(|(field, _)| fields.take(identifier(field)))
+                .map(|(field, _)| fields.take(internal(field)))
                 .collect(),
             name,
             camel,
@@ -104,7 +104,7 @@ const ENTRY: u32 = 3;
 /// From here on: the value is a field of the result of the part of this number.
 const PART: u32 = 4;
 
-/// Marks a generated name `t…` among the locals.
+/// Marks a generated name `t_…` among the locals.
 const GENERATED: u32 = 1 << 31;
 
 struct Writer<'c, 'a> {
@@ -295,8 +295,10 @@ impl<'a> Writer<'_, 'a> {
     fn part(&mut self, id: FunctionId, number: usize, total: usize, part: &Part, all: &[Part]) {
         let whole = self.signature(id);
         let base = whole.name.clone();
-        let camel = format!("{}Part{}", whole.camel, number + 1);
-        let name = self.take(format!("{base}_part_{}", number + 1));
+        let camel = format!("{}Part{}", whole.camel, capitals(number as u32));
+        let mut name = format!("{base}_part_");
+        push_letters(&mut name, number as u32);
+        let name = self.take(name);
         let packed = (part.inputs.len() > PARAMETERS).then(|| self.take(format!("{camel}Args")));
         let results = (part.outputs.len() > 1).then(|| self.take(camel));
         if let Some(packed) = &packed {
@@ -375,8 +377,8 @@ impl<'a> Writer<'_, 'a> {
         if let [output] = part.outputs[..] {
             self.local_name(output);
         } else {
-            self.push("p");
-            push_number(&mut self.context.out, number + 1);
+            self.push("p_");
+            push_letters(&mut self.context.out, number);
         }
         self.push(" = ");
         self.push(&name);

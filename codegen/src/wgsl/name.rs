@@ -6,9 +6,59 @@ use std::collections::hash_map::Entry;
 use std::hash::BuildHasher;
 
 /// An identifier made of arbitrary text: ASCII letters, digits and single underscores between them,
-/// not beginning with a digit, and not a reserved word of any target.
+/// not beginning or ending with a digit, and not a reserved word of any target.
+///
+/// A name that ends in a digit is legal everywhere, but naga's writers, and with them naga_oil, put an
+/// underscore behind it, so that what refers to it by name no longer finds it.
 pub fn identifier(text: &str) -> String {
-    let mut name = String::with_capacity(text.len() + 1);
+    let mut name = spelled(text);
+    if ends_in_digit(&name) || is_reserved(&name) {
+        name.push_str("_value");
+    }
+    name
+}
+
+/// An identifier for what nobody outside the shader names: the number at the end of `sum_0` or
+/// `wave_1` becomes a letter, `sum_a` and `wave_b`.
+pub(super) fn internal(text: &str) -> String {
+    let mut name = spelled(text);
+    let digits = name.bytes().rev().take_while(u8::is_ascii_digit).count();
+    let stem = name.len() - digits;
+    if digits > 0
+        && name[..stem].ends_with('_')
+        && let Ok(number) = name[stem..].parse()
+    {
+        name.truncate(stem);
+        push_letters(&mut name, number);
+    }
+    if ends_in_digit(&name) || is_reserved(&name) {
+        name.push_str("_value");
+    }
+    name
+}
+
+fn ends_in_digit(name: &str) -> bool {
+    name.ends_with(|c: char| c.is_ascii_digit())
+}
+
+/// Appends a number as letters: `a` for 0, `z` for 25, `aa` for 26.
+pub(super) fn push_letters(out: &mut String, number: u32) {
+    if number >= 26 {
+        push_letters(out, number / 26 - 1);
+    }
+    out.push(char::from(b'a' + (number % 26) as u8));
+}
+
+/// The number as letters, the first a capital.
+pub(super) fn capitals(number: u32) -> String {
+    let mut letters = String::new();
+    push_letters(&mut letters, number);
+    camel(&letters)
+}
+
+/// The letters, digits and gaps of a text as an identifier, which may be a reserved word.
+fn spelled(text: &str) -> String {
+    let mut name = String::with_capacity(text.len() + 6);
     let mut gap = false;
     if is_identifier(text) {
         name.push_str(text);
@@ -29,9 +79,6 @@ pub fn identifier(text: &str) -> String {
     }
     if name.is_empty() {
         name.push('x');
-    }
-    if is_reserved(&name) {
-        name.push_str("_value");
     }
     name
 }
@@ -100,19 +147,23 @@ fn hashed(name: &str) -> u64 {
 }
 
 impl Scope {
-    /// Takes `name`, or the first free of `name_2`, `name_3`, ….
+    /// Takes `name`, or the first free of `name_b`, `name_c`, ….
     pub(super) fn take(&mut self, name: String) -> String {
         let next = match self.taken.entry(hashed(&name)) {
             Entry::Vacant(place) => {
-                place.insert(2);
+                place.insert(1);
                 return name;
             }
             Entry::Occupied(next) => *next.get(),
         };
         for number in next.. {
-            let candidate = format!("{name}_{number}");
+            let mut candidate = name.clone() + "_";
+            push_letters(&mut candidate, number);
+            if is_reserved(&candidate) {
+                continue;
+            }
             if let Entry::Vacant(place) = self.taken.entry(hashed(&candidate)) {
-                place.insert(2);
+                place.insert(1);
                 self.taken.insert(hashed(&name), number + 1);
                 return candidate;
             }
@@ -126,11 +177,11 @@ impl Scope {
     }
 }
 
-/// Whether an identifier could be mistaken for one of the emitter's own short names: `t` (values) or
-/// `p` (parts) and a number.
+/// Whether an identifier could be mistaken for one of the emitter's own short names: `t_` (values) or
+/// `p_` (parts) and letters.
 pub(super) fn looks_generated(name: &str) -> bool {
-    let rest = name.strip_prefix(['t', 'p']);
-    rest.is_some_and(|r| !r.is_empty() && r.bytes().all(|b| b.is_ascii_digit()))
+    let rest = name.strip_prefix("t_").or_else(|| name.strip_prefix("p_"));
+    rest.is_some_and(|r| r.bytes().all(|b| b.is_ascii_lowercase()))
 }
 
 #[cfg(test)]
@@ -152,17 +203,34 @@ mod tests {
             ("_", "x"),
             ("fn", "fn_value"),
             ("Wald & Höhe", "Wald_H_he"),
+            ("layer_1", "layer_1_value"),
+            ("color2", "color2_value"),
         ] {
             assert_eq!(identifier(text), expected, "{text}");
         }
     }
 
     #[test]
+    fn numbers_inside_a_shader_are_letters() {
+        for (text, expected) in [
+            ("sum_0", "sum_a"),
+            ("e_1_27", "e_1_ab"),
+            ("v14", "v14_value"),
+            ("noise_99999999999", "noise_99999999999_value"),
+            ("half_", "half_value"),
+            ("size_19", "size_t_value"),
+            ("u", "u"),
+        ] {
+            assert_eq!(internal(text), expected, "{text}");
+        }
+    }
+
+    #[test]
     fn a_scope_never_gives_a_name_twice() {
         let mut scope = Scope::default();
-        let given: Vec<_> = ["a", "a_2", "a", "a", "a_2"]
+        let given: Vec<_> = ["a", "a_b", "a", "a", "a_b"]
             .map(|n| scope.take(n.to_owned()))
             .into();
-        assert_eq!(given, ["a", "a_2", "a_3", "a_4", "a_2_2"]);
+        assert_eq!(given, ["a", "a_b", "a_c", "a_d", "a_b_b"]);
     }
 }

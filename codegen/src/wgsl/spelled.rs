@@ -3,7 +3,7 @@
 
 use super::function::{self, Context, Signature};
 use super::gap::{Gap, Spelled};
-use super::name::Scope;
+use super::name::{Scope, capitals, push_letters};
 use crate::ir::{FunctionId, Module};
 
 /// The first of the letters that stand for names while a text is written; those for types follow
@@ -74,11 +74,13 @@ pub(super) fn push(context: &mut Context<'_>, id: FunctionId) -> bool {
     let names: Vec<&Signature> = std::iter::once(own)
         .chain(callees.iter().map(|&callee| signature(callee)))
         .collect();
-    let parts: Vec<String> = (1..=spelled.parts)
+    let parts: Vec<String> = (0..spelled.parts as u32)
         .flat_map(|part| {
-            let camel = format!("{}Part{part}", own.camel);
+            let camel = format!("{}Part{}", own.camel, capitals(part));
             let args = format!("{camel}Args");
-            [format!("{}_part_{part}", own.name), camel, args]
+            let mut name = format!("{}_part_", own.name);
+            push_letters(&mut name, part);
+            [name, camel, args]
         })
         .collect();
     let globals = &context.globals;

@@ -1,6 +1,6 @@
 //! Tests of the emitted text.
 
-use super::{Entry, Options, emit};
+use super::{DECLARATIONS, Entry, Options, emit};
 use crate::ir::{Builder, FOOTPRINT, Float, Int, Interface, Module, Port, Program};
 use crate::target::validate;
 use mipless_graph::Type as GraphType;
@@ -122,8 +122,8 @@ struct MarbleOctave {
 
 /// One octave of something.
 fn marble_octave(index: u32, mean: f32, slope: f32, x: f32) -> MarbleOctave {
-    let t1 = sin(x * f32(index));
-    return MarbleOctave(mean + t1, slope * t1);
+    let t_a = sin(x * f32(index));
+    return MarbleOctave(mean + t_a, slope * t_a);
 }
 
 /// A detail.
@@ -133,16 +133,16 @@ fn marble_fine(index: u32, state: f32) -> f32 {
 
 /// The whole texture.
 fn marble(footprint: Footprint, parameters: MarbleParameters) -> MarbleOutputs {
-    let t1 = footprint.uv.x * parameters.scale;
+    let t_a = footprint.uv.x * parameters.scale;
     var swirl = MarbleOctave(0.0, 1.0);
     for (var i = 0u; i < 5u; i++) {
-        swirl = marble_octave(i, swirl.mean, swirl.slope, t1);
+        swirl = marble_octave(i, swirl.mean, swirl.slope, t_a);
     }
     var fine = swirl.mean;
     if footprint.du.x < parameters.scale {
         fine = marble_fine(0u, fine);
     }
-    let veins = fine - (swirl.slope - t1);
+    let veins = fine - (swirl.slope - t_a);
     return MarbleOutputs(vec3f(veins, veins * 0.5, 1.0));
 }
 ";
@@ -187,7 +187,7 @@ fn parameters_have_the_uniform_layout_and_outputs_may_be_of_any_type() {
     };
     let program = Program { module, interface };
     for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
-        let shader = emit(&program, &Options { entry });
+        let shader = emit(&program, &entry.into());
         assert_valid(&shader.source);
         assert_eq!(shader.function, "float_value");
         let offsets: Vec<u32> = shader.parameters.iter().map(|p| p.offset).collect();
@@ -229,19 +229,14 @@ fn tables_become_one_buffer_and_loads_stay_inside() {
         b.result("value", b.load(table, index));
     }
     let program = program(b, module, "ramp", vec![port("value", GraphType::Vector3)]);
-    let shader = emit(
-        &program,
-        &Options {
-            entry: Entry::Compute,
-        },
-    );
+    let shader = emit(&program, &Entry::Compute.into());
     assert_valid(&shader.source);
     assert!(
-        shader.source.contains("ramp_tables[min(t1, 1u)]"),
+        shader.source.contains("ramp_tables[min(t_a, 1u)]"),
         "{}",
         shader.source
     );
-    assert!(shader.source.contains("ramp_tables[2u + min(t1, 2u)]"));
+    assert!(shader.source.contains("ramp_tables[2u + min(t_a, 2u)]"));
     assert!(shader.source.contains("ramp_tables[4u]"));
     assert_eq!(shader.tables.unwrap().data(), [1.0, 2.0, 3.0, 4.0, 5.0]);
     assert!(!shader.source.contains("parameters"), "there are none");
@@ -256,9 +251,11 @@ fn hostile_names_are_made_safe_and_unique() {
         "let",
         "fn",
         "float",
-        "t1",
-        "t2",
-        "p1",
+        "t_a",
+        "t_b",
+        "p_a",
+        "layer_1",
+        "color2",
         "i",
         "args",
         "footprint",
@@ -281,7 +278,7 @@ fn hostile_names_are_made_safe_and_unique() {
     let outputs = vec![port("texture", GraphType::Float)];
     let program = program(b, Module::default(), "texture", outputs);
     for entry in [Entry::Fragment, Entry::Compute] {
-        let shader = emit(&program, &Options { entry });
+        let shader = emit(&program, &entry.into());
         assert_valid(&shader.source);
         assert!(!shader.source.contains("__"), "{}", shader.source);
     }
@@ -306,7 +303,7 @@ fn a_graph_may_be_called_as_what_the_entry_points_hold() {
         let outputs = vec![port("value", GraphType::Float)];
         let program = program(b, Module::default(), name, outputs);
         for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
-            let shader = emit(&program, &Options { entry });
+            let shader = emit(&program, &entry.into());
             assert_valid(&shader.source);
             let function = format!("fn {name}_value(footprint: Footprint");
             assert!(shader.source.contains(&function), "{}", shader.source);
@@ -351,16 +348,16 @@ fn long_program(instructions: usize, seed: u32, near: u32) -> Program {
     program(b, module, "long", vec![port("sum", GraphType::Float)])
 }
 
-/// The most lines between `fn` and the closing brace.
+/// The most statements and braces between `fn` and the closing brace; a statement may have several
+/// lines.
 fn longest_function(source: &str) -> usize {
-    let (mut longest, mut start) = (0, 0);
-    for (number, line) in source.lines().enumerate() {
+    let (mut longest, mut count) = (0, 0);
+    for line in source.lines() {
         if line.starts_with("fn ") {
-            start = number;
-        } else if line == "}" && start > 0 {
-            longest = longest.max(number - start - 1);
-            start = 0;
+            count = 0;
         }
+        count += usize::from(line.ends_with([';', '{', '}']));
+        longest = longest.max(count);
     }
     longest
 }
@@ -371,13 +368,11 @@ fn long_functions_are_split_into_short_ones_that_validate() {
     for near in [40, 20_000] {
         let program = long_program(20_000, 7, near);
         assert!(program.module.entry().insts.len() > 20_000);
-        let options = Options {
-            entry: Entry::Compute,
-        };
+        let options = Options::from(Entry::Compute);
         let shader = emit(&program, &options);
         assert_valid(&shader.source);
         let longest = longest_function(&shader.source);
-        assert!(longest <= 200, "{longest} lines in a function");
+        assert!(longest <= 200, "{longest} statements in a function");
         assert_eq!(shader, emit(&program, &options));
     }
 }
@@ -415,10 +410,44 @@ proptest! {
     #[test]
     fn random_programs_are_valid(program in crate::ir::random::program()) {
         for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
-            let shader = emit(&program, &Options { entry });
+            let shader = emit(&program, &entry.into());
             if let Err(error) = validate(&shader.source) {
                 prop_assert!(false, "{}\n{}", error, shader.source);
             }
         }
     }
+}
+
+/// Every identifier of a text.
+fn identifiers(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+        .filter(|word| word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_'))
+}
+
+#[test]
+fn two_textures_stand_in_one_module_at_bindings_of_their_own() {
+    let shader = |name: &str, binding: u32| {
+        let mut module = Module::default();
+        let table = module.table("ramp", vec![1.0, 2.0]);
+        let b = &entry("entry");
+        let (_, [u, ..]) = footprint(b);
+        b.result("value", b.load(table, u.abs().to_int().to_uint()));
+        let program = program(b, module, name, vec![port("value", GraphType::Float)]);
+        let options = Options {
+            group: 2,
+            binding,
+            shared_footprint: true,
+            ..Options::default()
+        };
+        emit(&program, &options)
+    };
+    let [one, two] = [shader("one", 4), shader("two", 9)];
+    assert_valid(&format!("{}{}{}", *DECLARATIONS, one.source, two.source));
+    assert_eq!((one.bindings[0].group, one.bindings[0].binding), (2, 7));
+    assert!(
+        two.source
+            .contains("@group(2) @binding(12) var<storage, read>")
+    );
+    assert!(!one.source.contains("struct Footprint"));
+    assert!(identifiers(&one.source).any(|word| word == "one_tables"));
 }

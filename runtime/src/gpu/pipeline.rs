@@ -4,8 +4,7 @@ use std::sync::atomic::AtomicUsize;
 
 use mipless_codegen::ir::Program;
 use mipless_codegen::wgsl::{
-    Entry, FOOTPRINTS_BINDING, OUTPUTS_BINDING, Options, PARAMETERS_BINDING, Shader,
-    TABLES_BINDING, emit,
+    Entry, FOOTPRINTS_BINDING, OUTPUTS_BINDING, PARAMETERS_BINDING, Shader, TABLES_BINDING, emit,
 };
 
 use super::{Gpu, GpuError, LARGEST_PROGRAM};
@@ -44,12 +43,7 @@ impl Gpu {
         if instructions > LARGEST_PROGRAM {
             return Err(GpuError::TooLong(instructions));
         }
-        self.pipeline_of(emit(
-            program,
-            &Options {
-                entry: Entry::Compute,
-            },
-        ))
+        self.pipeline_of(emit(program, &Entry::Compute.into()))
     }
 
     /// Compiles a shader that was emitted with [`Entry::Compute`], with its default parameters.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::ir::random;
 use crate::target::Manifest;
-use crate::wgsl::{Entry, Options, emit};
+use crate::wgsl::{Entry, emit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use std::io::Write;
@@ -16,7 +16,7 @@ fn shaders(entry: Entry) -> Vec<Shader> {
         .map(|_| {
             let mut program = random::program().new_tree(&mut runner).unwrap().current();
             program.interface.name = "texture".to_owned();
-            emit(&program, &Options { entry })
+            emit(&program, &entry.into())
         })
         .collect()
 }

@@ -3,6 +3,7 @@
 use super::Writer;
 use crate::ir::{FunctionId, Inst, Op, Value};
 use crate::wgsl::expression::{Form, form, level, push_constant, push_number};
+use crate::wgsl::name::push_letters;
 use crate::wgsl::statement::{self, Count, is_single};
 
 impl Writer<'_, '_> {
@@ -40,8 +41,8 @@ impl Writer<'_, '_> {
         }
         self.generated += 1;
         let number = self.generated;
-        self.push("    var t");
-        push_number(&mut self.context.out, number);
+        self.push("    var t_");
+        push_letters(&mut self.context.out, number - 1);
         self.push(" = ");
         self.operand(operands[0], level::ANY);
         self.push(";\n");
@@ -255,8 +256,8 @@ impl Writer<'_, '_> {
             if let Some((hidden, number)) = self.hidden
                 && hidden == value
             {
-                self.push("t");
-                push_number(&mut self.context.out, number);
+                self.push("t_");
+                push_letters(&mut self.context.out, number - 1);
                 return;
             }
             let start = self.context.out.len();

@@ -2,8 +2,7 @@
 
 use super::{BARE, ENTRY, GENERATED, OWN, PACKED, PART, Writer};
 use crate::ir::{FunctionId, Inst, Value};
-use crate::wgsl::expression::push_number;
-use crate::wgsl::name::{identifier, looks_generated};
+use crate::wgsl::name::{internal, looks_generated, push_letters};
 use crate::wgsl::statement::is_single;
 
 impl Writer<'_, '_> {
@@ -30,7 +29,7 @@ impl Writer<'_, '_> {
 
     /// A new local name.
     pub(super) fn fresh(&mut self, text: &str) -> String {
-        let mut name = identifier(text);
+        let mut name = internal(text);
         if looks_generated(&name) || self.context.globals.holds(&name) {
             name.push_str("_value");
         }
@@ -72,8 +71,8 @@ impl Writer<'_, '_> {
                     .push_str(&entry.parameters[*position as usize]);
             }
             part => {
-                self.push("p");
-                push_number(&mut self.context.out, part - PART + 1);
+                self.push("p_");
+                push_letters(&mut self.context.out, part - PART);
                 self.push(".");
                 self.local_name(value);
             }
@@ -94,8 +93,8 @@ impl Writer<'_, '_> {
         }
         let local = self.locals[index];
         if local & GENERATED != 0 {
-            self.context.out.push('t');
-            push_number(&mut self.context.out, local & !GENERATED);
+            self.push("t_");
+            push_letters(&mut self.context.out, (local & !GENERATED) - 1);
         } else {
             self.context.out.push_str(&self.strings[local as usize - 1]);
         }
