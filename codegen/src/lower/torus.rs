@@ -87,6 +87,10 @@ impl<'b> Lower<'_, 'b> {
         let applies =
             compiler.options.method == Method::Auto && self.algebra.mode.spreads() && !self.in_rule;
         let repeated = compiler.facts.repeated.get(&index).filter(|_| applies)?;
+        let within = Bands::within(repeated.bands.of(&self.arguments), repeated.within);
+        if compiler.facts.rehearses && !self.measures {
+            return Some(self.averaged(index, closed, within));
+        }
         let periods = repeated.periods;
         let name = super::identifier(&compiler.graph.nodes[index].name);
         let ranges: Vec<[f32; 2]> = closed.iter().map(|signal| signal.range).collect();
@@ -114,7 +118,6 @@ impl<'b> Lower<'_, 'b> {
             parts.fold(first, |sum, part| sum + part)
         });
         let bundle = self.algebra.map([&place[0], &place[1]], &map);
-        let within = Bands::within(repeated.bands.of(&self.arguments), repeated.within);
         if within.as_constant() == Some(true) {
             return Some(bundle);
         }
