@@ -38,12 +38,12 @@ use rustc_hash::FxHashMap;
 use settings::Change;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 use suspects::{beginnings, ends, readers, repeated, steady};
-use truth::{BIASED, Errors, GLANCE, Truth, components, look, values};
-use verdict::{NOTICEABLE, Verdict, where_better};
+use truth::{BIASED, Errors, GLANCE, LOOK, Truth, components, look, values};
+use verdict::{NOTICEABLE, TOLERANCE, Verdict, where_better};
 
 /// Errors that are worth points: somewhat less than what an output may be off, so that bands beside
 /// each other are filtered alike.
-const SAMPLED: f64 = 0.8 * verdict::TOLERANCE;
+const SAMPLED: f64 = 0.8 * TOLERANCE;
 
 /// The most nodes of a graph that is audited: an audit takes about as long as a picture of 500 × 500
 /// points.
@@ -254,7 +254,10 @@ fn decide(
         .map(|(output, of)| (output, of.node.index()))
         .collect();
     let is_biased = |&(output, _): &(usize, usize)| glance.far_bias(output, &found) > BIASED;
-    if Verdict::of(&errors, &point, &floor).is_good() && !outputs.iter().any(is_biased) {
+    // A glance is noisy: what it says to be off is looked at closer.
+    let is_near = errors.iter().flatten().all(|&error| error <= TOLERANCE);
+    let is_good = is_near && Verdict::of(&errors, &point, &floor).is_good();
+    if is_good && !outputs.iter().any(is_biased) {
         let audit = Audit {
             outputs: audited_outputs(bands, [&point, &errors, &errors, &floor]),
             ..Audit::default()
@@ -348,7 +351,12 @@ fn decide(
 
     // Nodes with the first output that reads them.
     for &(output, node) in outputs.iter().rev() {
-        match truth.drawn(output, &best.values, steady[node]) {
+        // A map has the right mean.
+        let mapped = best
+            .repeated
+            .get(&node)
+            .map_or(0, |repeated| repeated.within);
+        match truth.drawn(output, &best.values, (steady[node], !mapped)) {
             Some(drawn) => facts.drawn.insert(node, drawn),
             None => facts.drawn.remove(&node),
         };
@@ -358,7 +366,7 @@ fn decide(
         .collect();
     if !live.is_empty() {
         let right = Options {
-            method: Method::Supersample(samples),
+            method: Method::Supersample(LOOK),
             moments: false,
             ..*options
         };

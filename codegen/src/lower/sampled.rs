@@ -12,6 +12,8 @@
 
 use super::bands::Bands;
 use super::drawn::Drawn;
+use super::period::Periods;
+use super::place::scattered;
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::float::Float as _;
 use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Uint, Vec2};
@@ -61,7 +63,9 @@ impl<'g, 'b> Lower<'g, 'b> {
         let turn = self.arguments.footprint.hashed(0x51ed_270b);
         let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
         let table = ("sampled_places", places as fn() -> Vec<f32>);
-        let points = self.points(index, closed.len(), within, (POINTS, table, turn));
+        let arguments = self.arguments.clone();
+        let rows = (POINTS, table, turn);
+        let points = self.points(index, (closed.len(), &arguments), within, rows);
         let points: Vec<Signal<'b>> = (points.into_iter().enumerate())
             .map(|(i, signal)| Signal {
                 mean: sampling.drawn.draw(i, signal.mean, lost),
@@ -71,17 +75,42 @@ impl<'g, 'b> Lower<'g, 'b> {
         instead(closed, &points, within)
     }
 
-    /// The node by so many points that its signal is nearly right, where the footprint is `within`
-    /// what is asked for, else `closed`: what is tried where in the end a map is read.
+    /// A node that repeats by so many points that its signal is nearly right, where the footprint is
+    /// `within` what is asked for, else `closed`: what is tried where in the end a map is read. Under
+    /// footprints that are wider than a period, of size `size`, the points are those of a period.
     pub(super) fn averaged(
         &mut self,
         index: usize,
         closed: &[Signal<'b>],
-        within: Bool<'b>,
+        (within, size): (Bool<'b>, Float<'b>),
+        periods: Periods,
     ) -> Bundle<'b> {
-        let b = self.b();
+        let sd = self.compiler.options.filter.sd();
+        let longest = periods
+            .map(|[x, y]| x.hypot(y))
+            .into_iter()
+            .fold(0.0, f64::max);
+        let is_wide = (size * sd).gt(longest as f32);
+        let mut arguments = self.arguments.clone();
+        let footprint = &mut arguments.footprint;
+        for (axis, of_footprint) in [&mut footprint.right, &mut footprint.down]
+            .into_iter()
+            .enumerate()
+        {
+            // Points are moved by so many standard deviations of the filter.
+            for (to, from) in of_footprint.iter_mut().zip(periods[axis]) {
+                *to = is_wide.select((from / f64::from(sd)) as f32, *to);
+            }
+        }
         let table = ("many_places", many_places as fn() -> Vec<f32>);
-        let points = self.points(index, closed.len(), within, (MANY, table, b.uint(0)));
+        let first = is_wide.select(MANY as u32, 0u32);
+        let rows = (MANY, table, first);
+        let mut points = self.points(index, (closed.len(), &arguments), within, rows);
+        for point in &mut points {
+            let flat = point.private + point.g.norm2();
+            point.private = is_wide.select(flat, point.private);
+            point.g = Vec2(point.g.0.map(|x| is_wide.select(0.0, x)));
+        }
         instead(closed, &points, within)
     }
 
@@ -91,7 +120,7 @@ impl<'g, 'b> Lower<'g, 'b> {
     fn points(
         &mut self,
         index: usize,
-        components: usize,
+        (components, arguments): (usize, &Arguments<'b>),
         within: Bool<'b>,
         (count, (name, places), first): (usize, (&str, fn() -> Vec<f32>), Uint<'b>),
     ) -> Vec<Signal<'b>> {
@@ -104,7 +133,7 @@ impl<'g, 'b> Lower<'g, 'b> {
         let b = self.b();
         let start = vec![b.float(0.0); Sums::COUNT * components];
         let points = within.select(count as u32, 0u32);
-        let sums = b.fold(&sample, points, start, (first, self.arguments.clone()));
+        let sums = b.fold(&sample, points, start, (first, arguments.clone()));
         let weight = 1.0 / count as f32;
         (sums.chunks(Sums::COUNT))
             .map(|sums| {
@@ -191,14 +220,17 @@ fn places() -> Vec<f32> {
 }
 
 /// Many points, in standard deviations: a sunflower's (Vogel 1979), at the radii at which a Gaussian has
-/// equal shares between them.
+/// equal shares between them; then as many of a unit square about 0.
 fn many_places() -> Vec<f32> {
-    let mut places = Vec::with_capacity(2 * MANY);
+    let mut places = Vec::with_capacity(4 * MANY);
     for i in 0..MANY {
         let inside = (i as f64 + 0.5) / MANY as f64;
         let radius = (-2.0 * inside.ln()).sqrt();
         let angle = TAU * (i as f64 * GOLDEN).fract();
         places.extend([angle.cos(), angle.sin()].map(|x| ((radius * x) as f32).high()));
+    }
+    for i in 0..MANY {
+        places.extend(scattered(i).map(|x| ((x - 0.5) as f32).high()));
     }
     places
 }

@@ -124,26 +124,38 @@ pub(crate) struct Map {
     step: Option<FunctionRef>,
 }
 
+/// The tables of a map, in the order of [`MOMENTS`].
+pub(crate) type Tables = [Numbers; 4];
+
+/// The tables of a function of so many components, sampled over a domain.
+pub(crate) fn tables(grid: &Grid, domain: Domain, components: usize) -> Tables {
+    let packing = Packing::new(components);
+    let total = packing.header() + (0..LEVELS).map(texels).sum::<usize>();
+    MOMENTS.map(|(moment, _)| {
+        let (baked, tried) = (Arc::clone(grid), Arc::clone(grid));
+        let periodic = domain.periodic;
+        let bake = move || bake::table(&baked, moment, periodic, &packing);
+        let error = move |table: &[f32]| bake::error(&tried, table, moment, periodic, &packing);
+        Numbers::lazy(total, bake).with_error(error)
+    })
+}
+
 impl Map {
-    /// `function` takes two numbers and gives up to four components within `ranges`; `grid` holds
-    /// it sampled over the domain.
+    /// `function` takes two numbers and gives up to four components within `ranges`; `tables` are
+    /// those of it over the domain.
     pub(crate) fn new(
         module: &mut Module,
         name: &str,
         function: FunctionRef,
         domain: Domain,
         ranges: Vec<[f32; 2]>,
-        grid: &Grid,
+        tables: Tables,
     ) -> Self {
         let packing = Packing::new(ranges.len());
         let levels = module.table("map_levels", layout(&packing));
-        let total = packing.header() + (0..LEVELS).map(texels).sum::<usize>();
-        let tables = MOMENTS.map(|(moment, suffix)| {
-            let (baked, tried) = (Arc::clone(grid), Arc::clone(grid));
-            let periodic = domain.periodic;
-            let bake = move || bake::table(&baked, moment, periodic, &packing);
-            let error = move |table: &[f32]| bake::error(&tried, table, moment, periodic, &packing);
-            let numbers = Numbers::lazy(total, bake).with_error(error);
+        let mut suffixes = MOMENTS.iter();
+        let tables = tables.map(|numbers| {
+            let (_, suffix) = suffixes.next().expect("a name for each moment");
             module.push_table(format!("{name}_{suffix}"), numbers)
         });
         let readers = MOMENTS.map(|(moment, suffix)| {

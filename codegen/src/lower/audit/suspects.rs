@@ -6,7 +6,7 @@ use super::super::torus::{self, Repeated};
 use super::super::{Compiler, Facts, NodeDef, Options, program, symbols};
 use super::places::Places;
 use super::truth::{Errors, GLANCE, Truth, values};
-use super::verdict::{TOLERANCE, Verdict, is_worse};
+use super::verdict::{Verdict, is_off, is_worse};
 use mipless_graph::{Checked, Class, Graph, NodeId, Output, Source, Type};
 use rustc_hash::FxHashMap;
 
@@ -91,7 +91,7 @@ pub(super) fn beginnings(
             let bad = (0..Bands::COUNT).any(|band| {
                 let [closed, point, floor] =
                     [&closed, &point, &floor].map(|errors| errors[output][band]);
-                closed > TOLERANCE || is_worse(closed, point, floor)
+                is_off(closed, floor) || is_worse(closed, point, floor)
             });
             (of.node.index(), bad)
         })

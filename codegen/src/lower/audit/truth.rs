@@ -12,9 +12,10 @@ use std::ops::Range;
 
 /// Points of the truth of a pixel at first, and at most where that shows an error.
 pub(super) const GLANCE: u32 = 128;
-const LOOK: u32 = 1024;
-/// The work that a truth is worth, in instructions of a lane: some hundredths of a second.
-const WORK: f64 = 2e8;
+pub(super) const LOOK: u32 = 1024;
+/// The work that a truth is worth, in instructions of a lane: about a quarter of a second. What is
+/// larger than some hundred nodes is looked at less closely.
+const WORK: f64 = 8e8;
 /// How far off a mean may be far away, as a display shows it.
 pub(super) const BIASED: f64 = 0.004;
 /// What of an error may be left where a signal is drawn to its mean, for that to count.
@@ -209,13 +210,13 @@ impl<'p> Truth<'p> {
         }
     }
 
-    /// How an output's values are best drawn to its means, in the bands where that counts; `None`
-    /// where it counts in none.
+    /// How an output's values are best drawn to its means, in the bands of `within` where that counts;
+    /// `None` where it counts in none.
     pub(super) fn drawn(
         &self,
         output: usize,
         found: &[Vec<f32>],
-        is_steady: bool,
+        (is_steady, within): (bool, u32),
     ) -> Option<Drawn> {
         let components = self.components(output);
         let start = components.start;
@@ -258,7 +259,8 @@ impl<'p> Truth<'p> {
             };
             let before = error(0.0);
             // The finest band holds all that is finer.
-            let counts = band > 0 && before > BIASED && error(f64::from(lost)) < BETTER * before;
+            let may = band > 0 && within >> band & 1 == 1 && before > BIASED;
+            let counts = may && error(f64::from(lost)) < BETTER * before;
             if counts { lost } else { 0.0 }
         });
         (lost != [0.0; Bands::COUNT]).then(|| self.drawn_to(far, lost))
