@@ -106,6 +106,11 @@ impl<F: Float> Scratch<F> {
     pub fn new() -> Self {
         Self(Registers::new())
     }
+
+    /// How many instructions of a lane it has taken so far: the same number on every machine.
+    pub fn work(&self) -> u64 {
+        self.0.steps * LANES as u64
+    }
 }
 
 impl<F: Float> Default for Scratch<F> {

@@ -48,6 +48,7 @@ pub(crate) use library::{Library, Shelves};
 pub(crate) use op::for_each_op;
 pub use op::{Op, OpInfo};
 pub use shared::SharedFunction;
+pub(crate) use table::Borrowed;
 pub use table::{Numbers, Table};
 pub use text::ParseError;
 pub use vector::{Sym2, Vec2, dot};

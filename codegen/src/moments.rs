@@ -43,7 +43,7 @@ use crate::ir::{Builder, Float};
 pub(crate) use branch::Branch;
 pub use curve::Curve;
 pub use map::Domain;
-pub(crate) use map::{Grid, Map, SIDE};
+pub(crate) use map::{Grid, Map, SIDE, Tables, tables};
 pub use normal::Normal;
 pub use piecewise::{Bump, Knot, Piecewise, Shape};
 pub(crate) use signal::PARTS;

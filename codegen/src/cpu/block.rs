@@ -27,6 +27,8 @@ pub(super) struct Registers<F> {
     pub(super) words: Vec<Box<Lanes<u32>>>,
     spare_float: Box<Lanes<F>>,
     spare_word: Box<Lanes<u32>>,
+    /// How many steps have been taken.
+    pub(super) steps: u64,
 }
 
 fn zeroed<T: Copy + Default>() -> Box<Lanes<T>> {
@@ -40,6 +42,7 @@ impl<F: Float> Registers<F> {
             words: Vec::new(),
             spare_float: zeroed(),
             spare_word: zeroed(),
+            steps: 0,
         }
     }
 

@@ -19,7 +19,10 @@ impl<F: Float> Run<'_, F> {
         let code = self.code;
         for node in nodes {
             match node {
-                Node::Block(steps) => (self.runner)(steps, self.registers, &code.tables),
+                Node::Block(steps) => {
+                    self.registers.steps += steps.len() as u64;
+                    (self.runner)(steps, self.registers, &code.tables);
+                }
                 Node::Call(function) => self.nodes(&code.functions[function.index()], active),
                 Node::Fold(fold) => self.fold(fold, active),
             }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::ops::Deref;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, OnceLock, Weak};
 
 /// A table of numbers that [`super::Inst::Load`] reads.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +18,23 @@ pub struct Table {
 pub struct Numbers {
     len: usize,
     shared: Arc<Shared>,
+}
+
+/// Numbers that are there as long as something else has them.
+#[derive(Clone)]
+pub(crate) struct Borrowed {
+    len: usize,
+    shared: Weak<Shared>,
+}
+
+impl Borrowed {
+    pub(crate) fn get(&self) -> Option<Numbers> {
+        let shared = self.shared.upgrade()?;
+        Some(Numbers {
+            len: self.len,
+            shared,
+        })
+    }
 }
 
 struct Shared {
@@ -64,6 +81,14 @@ impl Numbers {
     pub fn error(&self) -> Option<f64> {
         let measure = self.shared.measure.as_ref()?;
         Some(*self.shared.error.get_or_init(|| measure(self)))
+    }
+
+    /// The same numbers, which this does not keep.
+    pub(crate) fn borrowed(&self) -> Borrowed {
+        Borrowed {
+            len: self.len,
+            shared: Arc::downgrade(&self.shared),
+        }
     }
 
     /// How many numbers; computes none.

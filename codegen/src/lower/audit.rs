@@ -2,8 +2,8 @@
 //! footprints, and what is worse than no filter is sampled.
 //!
 //! The closed forms are exact for what they are made for; a stranger's graph may be something else.
-//! So the program is evaluated on the CPU for [`Bands::COUNT`] sizes of pixels at a few places, and held
-//! against means of many points. Where an output is further off than a point, or by more than
+//! So the program is evaluated on the CPU for [`Bands::COUNT`] sizes of pixels at a few places, those at
+//! which it is most in doubt ([`places`]), and held against means of many points. Where an output is further off than a point, or by more than
 //! a tolerance, ways are tried one after the other:
 //!
 //! 1. the closed form as it is;
@@ -17,6 +17,7 @@
 //! matters costs nothing.
 
 mod extent;
+mod places;
 mod settings;
 mod suspects;
 mod truth;
@@ -30,17 +31,19 @@ use super::shape::{Shape, shape};
 use super::torus::Repeated;
 use super::{Compiler, Facts, Method, NodeDef, Options, program};
 use crate::ir::Program;
+use extent::{Extent, extent};
 use mipless_graph::{Checked, Class, Graph, NodeId};
+use places::{LARGEST, Places, candidates};
 use rustc_hash::FxHashMap;
 use settings::Change;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 use suspects::{beginnings, ends, readers, repeated, steady};
-use truth::{BIASED, Errors, GLANCE, LARGEST, LOOK, Truth, footprints, values};
-use verdict::{NOTICEABLE, Verdict, where_better};
+use truth::{BIASED, Errors, GLANCE, LOOK, Truth, components, look, values};
+use verdict::{NOTICEABLE, TOLERANCE, Verdict, where_better};
 
 /// Errors that are worth points: somewhat less than what an output may be off, so that bands beside
 /// each other are filtered alike.
-const SAMPLED: f64 = 0.8 * verdict::TOLERANCE;
+const SAMPLED: f64 = 0.8 * TOLERANCE;
 
 /// The most nodes of a graph that is audited: an audit takes about as long as a picture of 500 × 500
 /// points.
@@ -226,12 +229,24 @@ fn decide(
         moments: false,
         ..*options
     };
-    let (bands, distance) = extent::bands(&program(graph, catalogue, &point, facts));
-    let footprints = &*footprints(bands, distance);
-    let at = (bands, footprints);
-    let glance = Truth::of(GLANCE, at, graph, catalogue, options, facts);
+    let point = program(graph, catalogue, &point, facts);
+    let Extent {
+        bands,
+        distance,
+        work,
+    } = extent(&point);
+    let candidates = candidates(bands, distance);
     let closed = program(graph, catalogue, options, facts);
-    let found = values(&closed, footprints);
+    let seen = values(&closed, &candidates);
+    let of_points = values(&point, &candidates);
+    let outputs = components(graph);
+    let (places, indices) = Places::of(bands, &candidates, [&seen, &of_points], &outputs);
+    let places = &places;
+    let footprints = &*places.footprints;
+    let found: Vec<Vec<f32>> = (seen.iter())
+        .map(|values| indices.iter().map(|&index| values[index]).collect())
+        .collect();
+    let glance = Truth::of(GLANCE, places, graph, catalogue, options, facts);
     let errors = glance.errors(&found);
     let (point, floor) = (glance.errors(&glance.point), glance.floor());
     let steady = steady(graph);
@@ -239,7 +254,10 @@ fn decide(
         .map(|(output, of)| (output, of.node.index()))
         .collect();
     let is_biased = |&(output, _): &(usize, usize)| glance.far_bias(output, &found) > BIASED;
-    if Verdict::of(&errors, &point, &floor).is_good() && !outputs.iter().any(is_biased) {
+    // A glance is noisy: what it says to be off is looked at closer.
+    let is_near = errors.iter().flatten().all(|&error| error <= TOLERANCE);
+    let is_good = is_near && Verdict::of(&errors, &point, &floor).is_good();
+    if is_good && !outputs.iter().any(is_biased) {
         let audit = Audit {
             outputs: audited_outputs(bands, [&point, &errors, &errors, &floor]),
             ..Audit::default()
@@ -251,7 +269,13 @@ fn decide(
         };
         return (closed, decision);
     }
-    let truth = Truth::of(LOOK, at, graph, catalogue, options, facts);
+    let samples = look(work);
+    let truth = if samples > GLANCE {
+        Truth::of(samples, places, graph, catalogue, options, facts)
+    } else {
+        glance
+    };
+    facts.rehearses = true;
     let (point, floor) = (truth.errors(&truth.point), truth.floor());
     let verdict = |errors: &Errors| Verdict::of(errors, &point, &floor);
     let candidate = |facts: &Facts| {
@@ -287,12 +311,17 @@ fn decide(
     let readers = readers(graph);
     if !verdict(&best.errors).is_good() {
         facts.repeated = repeated(bands, checked, catalogue, options, facts);
-        let maps = candidate(facts).errors;
+        let maps = candidate(facts);
+        let mut everywhere = true;
         facts.repeated.retain(|node, repeated| {
-            repeated.within = where_better(&maps, &best.errors, &readers[*node], NOTICEABLE);
+            repeated.within = where_better(&maps.errors, &best.errors, &readers[*node], NOTICEABLE);
+            everywhere &= repeated.within == Bands::ALL;
             repeated.within != 0
         });
-        best = best.or(candidate(facts), verdict);
+        if !facts.repeated.is_empty() {
+            let maps = if everywhere { maps } else { candidate(facts) };
+            best = best.or(maps, verdict);
+        }
         facts.repeated.clone_from(&best.repeated);
     }
     for by in [Points::AtBeginnings, Points::AtEnds] {
@@ -300,24 +329,34 @@ fn decide(
             break;
         }
         let mut added = match by {
-            Points::AtBeginnings => beginnings(at, graph, catalogue, options, facts, &steady),
+            Points::AtBeginnings => beginnings(places, graph, catalogue, options, facts, &steady),
             Points::AtEnds => ends(graph, &truth, [&best.errors, &point, &floor], &steady),
         };
         facts.sampled.extend(added.clone());
-        let everywhere = candidate(facts).errors;
+        let points = candidate(facts);
+        let mut everywhere = true;
         added.retain(|node, sampling| {
-            sampling.within = where_better(&everywhere, &best.errors, &readers[*node], SAMPLED);
+            sampling.within = where_better(&points.errors, &best.errors, &readers[*node], SAMPLED);
+            everywhere &= sampling.within == Bands::ALL;
             sampling.within != 0
         });
         facts.sampled.clone_from(&best.sampled);
-        facts.sampled.extend(added);
-        best = best.or(candidate(facts), verdict);
-        facts.sampled.clone_from(&best.sampled);
+        if !added.is_empty() {
+            facts.sampled.extend(added);
+            let points = if everywhere { points } else { candidate(facts) };
+            best = best.or(points, verdict);
+            facts.sampled.clone_from(&best.sampled);
+        }
     }
 
     // Nodes with the first output that reads them.
     for &(output, node) in outputs.iter().rev() {
-        match truth.drawn(output, &best.values, steady[node]) {
+        // A map has the right mean.
+        let mapped = best
+            .repeated
+            .get(&node)
+            .map_or(0, |repeated| repeated.within);
+        match truth.drawn(output, &best.values, (steady[node], !mapped)) {
             Some(drawn) => facts.drawn.insert(node, drawn),
             None => facts.drawn.remove(&node),
         };
@@ -356,6 +395,10 @@ fn decide(
         }
     }
 
+    facts.rehearses = false;
+    if !best.repeated.is_empty() {
+        best.program = program(graph, catalogue, options, facts);
+    }
     let sampled = (best.sampled.iter()).map(|(&node, by)| (node, Remedy::Sampled, by.within));
     let repeated = (best.repeated.iter()).map(|(&node, by)| (node, Remedy::Repeated, by.within));
     let drawn = (facts.drawn.iter()).map(|(&node, by)| (node, Remedy::Drawn, by.within()));

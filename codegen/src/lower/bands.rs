@@ -42,13 +42,17 @@ impl Bands {
 
     const LAST: usize = Self::COUNT - 1;
 
-    /// In which band the footprint lies, counted from 0, as a real number.
-    pub(super) fn of<'b>(self, place: &Arguments<'b>) -> Float<'b> {
+    /// The size of a footprint that is round; √2 times the shorter axis of a long one.
+    pub(super) fn shorter<'b>(place: &Arguments<'b>) -> Float<'b> {
         let (right, down) = (place.footprint.right, place.footprint.down);
         let area = (right[0] * down[1] - right[1] * down[0]).abs();
         let squares = Vec2(right).norm2() + Vec2(down).norm2();
-        // For a round footprint its size; for a long one √2 times the shorter axis.
-        let size = area * std::f32::consts::SQRT_2 / squares.max(1e-30).sqrt();
+        area * std::f32::consts::SQRT_2 / squares.max(1e-30).sqrt()
+    }
+
+    /// In which band the footprint lies, counted from 0, as a real number.
+    pub(super) fn of<'b>(self, place: &Arguments<'b>) -> Float<'b> {
+        let size = Self::shorter(place);
         let octaves = size.clamp(1e-12, 1e12).ln() * std::f32::consts::LOG2_E;
         (octaves - self.finest as f32) * (1.0 / self.octaves as f32)
     }

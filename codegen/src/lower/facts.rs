@@ -18,6 +18,9 @@ pub(super) struct Facts {
     pub(super) sampled: FxHashMap<usize, sampled::Sampling>,
     /// The nodes that repeat, which `auto` reads from maps.
     pub(super) repeated: FxHashMap<usize, torus::Repeated>,
+    /// Whether these are tried: means over many points take the place of maps, which take far longer
+    /// to bake than an audit does.
+    pub(super) rehearses: bool,
     /// The nodes that `auto` draws to their means.
     pub(super) drawn: FxHashMap<usize, drawn::Drawn>,
     /// Whether the surface's place shapes each node's output.
@@ -35,6 +38,7 @@ impl Facts {
             literal: symbols::literal(graph),
             sampled: FxHashMap::default(),
             repeated: FxHashMap::default(),
+            rehearses: false,
             drawn: FxHashMap::default(),
             placed: symbols::placed(graph),
             mixtures: mixture::Mixtures::default(),

@@ -3,7 +3,7 @@
 use super::{Bundle, Compiler, Lower};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, Float, FunctionRef, Module};
-use crate::moments::{Domain, Grid, Map, SIDE, Signal};
+use crate::moments::{Domain, Grid, Map, SIDE, Signal, tables};
 use mipless_graph::Node;
 use std::sync::{Arc, LazyLock};
 
@@ -38,7 +38,8 @@ impl<'b> Lower<'_, 'b> {
                 function(&mut module, "map", &*build);
                 sampled(&module, domain)
             })));
-            Map::new(module, &name, of, domain, ranges.to_vec(), &grid)
+            let tables = tables(&grid, domain, ranges.len());
+            Map::new(module, &name, of, domain, ranges.to_vec(), tables)
         });
         self.algebra.map([x, y], &map)
     }

@@ -11,11 +11,11 @@
 //! conditional taps of T₂(T₁(X) + Y): the taps are in the map.
 
 use super::fusion::{Known, region};
-use super::shape::{self, Shape, measured};
+use super::shape::{self, Shape, baked, measured};
 use super::{Arguments, Bundle, Compiler, Lower, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
-use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
+use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal, tables};
 use mipless_graph::{Node, NodeId, Source};
 use std::rc::Rc;
 use std::sync::{Arc, LazyLock};
@@ -115,7 +115,7 @@ impl<'b> Lower<'_, 'b> {
         }
         let compiler = self.compiler;
         let shape = shape(compiler, index, &before);
-        let gains = measured(compiler, shape, || {
+        let gains = measured(compiler, shape.clone(), || {
             usize::from(gains(compiler, index, &before))
         });
         if gains == 0 {
@@ -138,7 +138,8 @@ impl<'b> Lower<'_, 'b> {
             let grid: Grid = Arc::new(LazyLock::new(Box::new(move || {
                 super::map::sampled(&alone, domain)
             })));
-            Map::new(module, &name, of, domain, ranges, &grid)
+            let tables = baked(shape, || tables(&grid, domain, ranges.len()));
+            Map::new(module, &name, of, domain, ranges, tables)
         });
         Some(self.algebra.map([&x, &y], &map))
     }

@@ -16,14 +16,20 @@
 
 use super::bands::Bands;
 use super::drawn::Drawn;
+use super::period::Periods;
+use super::place::scattered;
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::float::Float as _;
-use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Vec2};
+use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Uint, Vec2};
 use crate::moments::{Algebra, Mode, PARTS, Signal};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// How many points there are.
 pub(super) const POINTS: usize = 7;
+/// How many points there are where a map is tried.
+const MANY: usize = 256;
+/// The golden section.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 /// How many turns of the hexagon there are.
 const TURNS: u32 = 64;
 
@@ -55,50 +61,119 @@ impl<'g, 'b> Lower<'g, 'b> {
         closed: &[Signal<'b>],
         sampling: &Sampling,
     ) -> Bundle<'b> {
-        let (compiler, count) = (self.compiler, closed.len());
-        let sample = self.function(&format!("sample of {index}"), |module| {
-            let point = point_function(compiler, module, index);
-            sample_function(compiler, module, &point, index)
-        });
-        let b = self.b();
-        let place = self.arguments.clone();
-        let band = sampling.drawn.bands.of(&place);
+        let compiler = self.compiler;
+        let band = sampling.drawn.bands.of(&self.arguments);
         let within = Bands::within(band, sampling.within);
+        let lost = sampling.drawn.lost(band);
+        let turn = self.arguments.footprint.hashed(0x51ed_270b);
+        let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
+        let table = ("sampled_places", places as fn() -> Vec<f32>);
+        let arguments = self.arguments.clone();
+        let rows = (POINTS, table, turn);
+        let points = self.points(index, (closed.len(), &arguments), within, rows);
+        let points: Vec<Signal<'b>> = (points.into_iter().enumerate())
+            .map(|(i, signal)| Signal {
+                mean: sampling.drawn.draw(i, signal.mean, lost),
+                ..signal
+            })
+            .collect();
         let everywhere = within.as_constant() == Some(true);
         let closed = &match compiler.facts.live[index] == 1 && compiler.is_output(index) {
             true if !everywhere => self.closed_elsewhere(index, closed, within),
             _ => closed.to_vec(),
         };
+        instead(closed, &points, within)
+    }
 
-        let turn = place.footprint.hashed(0x51ed_270b);
-        let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
-        let start = vec![b.float(0.0); Sums::COUNT * count];
-        let points = within.select(POINTS as u32, 0u32);
-        let sums = b.fold(&sample, points, start, (turn, place));
-
-        let weight = 1.0 / POINTS as f32;
-        let lost = sampling.drawn.lost(band);
-        (closed.iter().zip(sums.chunks(Sums::COUNT)))
+    /// A node that repeats by so many points that its signal is nearly right, where the footprint is
+    /// `within` what is asked for, else `closed`: what is tried where in the end a map is read. Under
+    /// footprints that are wider than a period, of size `size`, the points are those of a period.
+    pub(super) fn averaged(
+        &mut self,
+        index: usize,
+        closed: &[Signal<'b>],
+        (within, size): (Bool<'b>, Float<'b>),
+        periods: Periods,
+    ) -> Bundle<'b> {
+        let sd = self.compiler.options.filter.sd();
+        let longest = periods
+            .map(|[x, y]| x.hypot(y))
+            .into_iter()
+            .fold(0.0, f64::max);
+        let is_wide = (size * sd).gt(longest as f32);
+        let mut arguments = self.arguments.clone();
+        let footprint = &mut arguments.footprint;
+        for (axis, of_footprint) in [&mut footprint.right, &mut footprint.down]
+            .into_iter()
             .enumerate()
-            .map(|(i, (closed, sums))| {
+        {
+            // Points are moved by so many standard deviations of the filter.
+            for (to, from) in of_footprint.iter_mut().zip(periods[axis]) {
+                *to = is_wide.select((from / f64::from(sd)) as f32, *to);
+            }
+        }
+        let table = ("many_places", many_places as fn() -> Vec<f32>);
+        let first = is_wide.select(MANY as u32, 0u32);
+        let rows = (MANY, table, first);
+        let mut points = self.points(index, (closed.len(), &arguments), within, rows);
+        for point in &mut points {
+            let flat = point.private + point.g.norm2();
+            point.private = is_wide.select(flat, point.private);
+            point.g = Vec2(point.g.0.map(|x| is_wide.select(0.0, x)));
+        }
+        instead(closed, &points, within)
+    }
+
+    /// The mean, the linear response and the variance of the node's components over points, whose
+    /// places a table holds from a row on; anything where the footprint is not `within` what is asked
+    /// for.
+    fn points(
+        &mut self,
+        index: usize,
+        (components, arguments): (usize, &Arguments<'b>),
+        within: Bool<'b>,
+        (count, (name, places), first): (usize, (&str, fn() -> Vec<f32>), Uint<'b>),
+    ) -> Vec<Signal<'b>> {
+        let compiler = self.compiler;
+        let sample = self.function(&format!("sample of {index} by {name}"), |module| {
+            let point = point_function(compiler, module, index);
+            let table = module.table(name, places());
+            sample_function(compiler, module, &point, (index, table))
+        });
+        let b = self.b();
+        let start = vec![b.float(0.0); Sums::COUNT * components];
+        let points = within.select(count as u32, 0u32);
+        let sums = b.fold(&sample, points, start, (first, arguments.clone()));
+        let weight = 1.0 / count as f32;
+        (sums.chunks(Sums::COUNT))
+            .map(|sums| {
                 let sums = Sums::of(sums);
                 let apart = weight * sums.apart;
                 let g = Vec2([weight * sums.along[0], weight * sums.along[1]]);
                 let variance = weight * sums.squares - apart.square();
-                let mean = sums.centre + apart;
-                let points = Signal {
+                Signal {
                     g,
                     private: (variance - g.norm2()).max(0.0),
-                    ..Signal::certain(sampling.drawn.draw(i, mean, lost)).with_range(closed.range)
-                };
-                if everywhere {
-                    points
-                } else {
-                    closed.select(within, &points).with_range(closed.range)
+                    ..Signal::certain(sums.centre + apart)
                 }
             })
             .collect()
     }
+}
+
+/// Signals where the footprint is within what is asked for, else the closed ones.
+fn instead<'b>(closed: &[Signal<'b>], points: &[Signal<'b>], within: Bool<'b>) -> Bundle<'b> {
+    let everywhere = within.as_constant() == Some(true);
+    (closed.iter().zip(points))
+        .map(|(closed, points)| {
+            let points = points.clone().with_range(closed.range);
+            if everywhere {
+                points
+            } else {
+                closed.select(within, &points).with_range(closed.range)
+            }
+        })
+        .collect()
 }
 
 impl<'a> Compiler<'a> {
@@ -219,15 +294,30 @@ fn places() -> Vec<f32> {
     places
 }
 
+/// Many points, in standard deviations: a sunflower's (Vogel 1979), at the radii at which a Gaussian has
+/// equal shares between them; then as many of a unit square about 0.
+fn many_places() -> Vec<f32> {
+    let mut places = Vec::with_capacity(4 * MANY);
+    for i in 0..MANY {
+        let inside = (i as f64 + 0.5) / MANY as f64;
+        let radius = (-2.0 * inside.ln()).sqrt();
+        let angle = TAU * (i as f64 * GOLDEN).fract();
+        places.extend([angle.cos(), angle.sin()].map(|x| ((radius * x) as f32).high()));
+    }
+    for i in 0..MANY {
+        places.extend(scattered(i).map(|x| ((x - 0.5) as f32).high()));
+    }
+    places
+}
+
 /// One more point: a turn of the fold.
 fn sample_function(
     compiler: &Compiler<'_>,
     module: &mut Module,
     point: &FunctionRef,
-    index: usize,
+    (index, table): (usize, u32),
 ) -> FunctionRef {
     let count = point.results.len();
-    let table = module.table("sampled_places", places());
     let name = super::identifier(&compiler.graph.nodes[index].name);
     let b = &Builder::new(
         format!("{name}_sample"),

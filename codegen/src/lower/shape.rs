@@ -1,9 +1,11 @@
 //! What tells regions apart that are measured: those of one shape are measured once in a process.
 
 use super::Compiler;
+use crate::ir::{Borrowed, Numbers};
+use crate::moments::Tables;
 use mipless_graph::{Literal, NodeId, Parameter, Source, Type};
 use rustc_hash::FxHashMap;
-use std::sync::{LazyLock, PoisonError, RwLock};
+use std::sync::{LazyLock, Mutex, PoisonError, RwLock};
 
 /// All that a region's function and its entries depend on.
 pub(super) type Shape = Vec<u32>;
@@ -91,6 +93,33 @@ fn parameter(parameter: &Parameter, words: &mut Shape) {
     for bound in bounds {
         words.extend([u32::from(bound.is_some()), bound.unwrap_or(0.0).to_bits()]);
     }
+}
+
+/// The tables that programs of this process have, by the shapes of what they are of: those of one
+/// shape are baked once, as long as one of the programs is there.
+static BAKED: LazyLock<Mutex<FxHashMap<Shape, [Borrowed; 4]>>> = LazyLock::new(Mutex::default);
+
+/// The tables of a shape, made where no program has them. What has no shape has tables of its own.
+pub(super) fn baked(shape: Option<Shape>, make: impl FnOnce() -> Tables) -> Tables {
+    let Some(shape) = shape else {
+        return make();
+    };
+    let mut known = BAKED.lock().unwrap_or_else(PoisonError::into_inner);
+    let there = |tables: &[Borrowed; 4]| {
+        let [a, b, c, d] = tables;
+        Some([a.get()?, b.get()?, c.get()?, d.get()?])
+    };
+    if let Some(tables) = known.get(&shape).and_then(there) {
+        return tables;
+    }
+    let tables = make();
+    if known.len() >= MOST {
+        known.retain(|_, tables| there(tables).is_some());
+    }
+    if known.len() < MOST {
+        known.insert(shape, tables.each_ref().map(Numbers::borrowed));
+    }
+    tables
 }
 
 /// What `measure` says of a shape, asked once for each; 0 for all but the first shapes of a graph.

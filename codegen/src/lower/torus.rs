@@ -5,9 +5,10 @@ use super::bands::Bands;
 use super::fusion::region;
 use super::period::{Function, Periods, directions, periods, steps};
 use super::place::Place;
+use super::shape::{baked, shape};
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::ir::{FOOTPRINT, FunctionRef, Module, Vec2};
-use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal};
+use crate::moments::{Algebra, Domain, Grid, Map, Mode, Signal, tables};
 use mipless_graph::Source;
 use std::sync::{Arc, LazyLock};
 
@@ -88,6 +89,11 @@ impl<'b> Lower<'_, 'b> {
             compiler.options.method == Method::Auto && self.algebra.mode.spreads() && !self.in_rule;
         let repeated = compiler.facts.repeated.get(&index).filter(|_| applies)?;
         let periods = repeated.periods;
+        let within = Bands::within(repeated.bands.of(&self.arguments), repeated.within);
+        if compiler.facts.rehearses && !self.measures {
+            let footprint = (within, Bands::shorter(&self.arguments));
+            return Some(self.averaged(index, closed, footprint, periods));
+        }
         let name = super::identifier(&compiler.graph.nodes[index].name);
         let ranges: Vec<[f32; 2]> = closed.iter().map(|signal| signal.range).collect();
         let map = compiler.mapped(self.module, &format!("torus {index}"), |module| {
@@ -98,7 +104,14 @@ impl<'b> Lower<'_, 'b> {
             let grid: Grid = Arc::new(LazyLock::new(Box::new(move || {
                 super::map::sampled(&alone, DOMAIN)
             })));
-            Map::new(module, &name, of, DOMAIN, ranges, &grid)
+            let shape = shape(compiler, &[], &region(compiler, index, &[])).map(|mut shape| {
+                let periods = periods.as_flattened().iter().map(|x| x.to_bits());
+                shape.push(u32::MAX);
+                shape.extend(periods.flat_map(|bits| [bits as u32, (bits >> 32) as u32]));
+                shape
+            });
+            let tables = baked(shape, || tables(&grid, DOMAIN, ranges.len()));
+            Map::new(module, &name, of, DOMAIN, ranges, tables)
         });
         let [[a, c], [b, d]] = periods;
         let area = a * d - b * c;
@@ -114,7 +127,6 @@ impl<'b> Lower<'_, 'b> {
             parts.fold(first, |sum, part| sum + part)
         });
         let bundle = self.algebra.map([&place[0], &place[1]], &map);
-        let within = Bands::within(repeated.bands.of(&self.arguments), repeated.within);
         if within.as_constant() == Some(true) {
             return Some(bundle);
         }

@@ -124,38 +124,49 @@ pub(crate) struct Map {
     step: Option<FunctionRef>,
 }
 
+/// The tables of a map, in the order of [`MOMENTS`].
+pub(crate) type Tables = [Numbers; 4];
+
+/// The tables of a function of so many components, sampled over a domain.
+pub(crate) fn tables(grid: &Grid, domain: Domain, components: usize) -> Tables {
+    let packing = Packing::new(components);
+    let total = packing.header() + (0..LEVELS).map(texels).sum::<usize>();
+    let periodic = domain.periodic;
+    let (of_means, of_spreads, tried) = (Arc::clone(grid), Arc::clone(grid), Arc::clone(grid));
+    let means = move || bake::means(&of_means, periodic, &packing);
+    let spreads = LazyLock::new(move || bake::spreads(&of_spreads, periodic, &packing));
+    let baked = Arc::new((LazyLock::new(means), spreads));
+    let errors = {
+        let baked = Arc::clone(&baked);
+        LazyLock::new(move || bake::errors(&tried, &baked.0, &baked.1, periodic, &packing))
+    };
+    let errors = Arc::new(errors);
+    MOMENTS.map(|(moment, _)| {
+        let (baked, errors) = (Arc::clone(&baked), Arc::clone(&errors));
+        let table = move || match moment {
+            Moment::Mean => baked.0.clone(),
+            _ => baked.1[moment as usize - 1].clone(),
+        };
+        Numbers::lazy(total, table).with_error(move |_| errors[moment as usize])
+    })
+}
+
 impl Map {
-    /// `function` takes two numbers and gives up to four components within `ranges`; `grid` holds
-    /// it sampled over the domain.
+    /// `function` takes two numbers and gives up to four components within `ranges`; `tables` are
+    /// those of it over the domain.
     pub(crate) fn new(
         module: &mut Module,
         name: &str,
         function: FunctionRef,
         domain: Domain,
         ranges: Vec<[f32; 2]>,
-        grid: &Grid,
+        tables: Tables,
     ) -> Self {
         let packing = Packing::new(ranges.len());
         let levels = module.table("map_levels", layout(&packing));
-        let total = packing.header() + (0..LEVELS).map(texels).sum::<usize>();
-        let periodic = domain.periodic;
-        let (of_means, of_spreads, tried) = (Arc::clone(grid), Arc::clone(grid), Arc::clone(grid));
-        let means = move || bake::means(&of_means, periodic, &packing);
-        let spreads = LazyLock::new(move || bake::spreads(&of_spreads, periodic, &packing));
-        let baked = Arc::new((LazyLock::new(means), spreads));
-        let errors = {
-            let baked = Arc::clone(&baked);
-            LazyLock::new(move || bake::errors(&tried, &baked.0, &baked.1, periodic, &packing))
-        };
-        let errors = Arc::new(errors);
-        let tables = MOMENTS.map(|(moment, suffix)| {
-            let (baked, errors) = (Arc::clone(&baked), Arc::clone(&errors));
-            let table = move || match moment {
-                Moment::Mean => baked.0.clone(),
-                _ => baked.1[moment as usize - 1].clone(),
-            };
-            let error = move |_: &[f32]| errors[moment as usize];
-            let numbers = Numbers::lazy(total, table).with_error(error);
+        let mut suffixes = MOMENTS.iter();
+        let tables = tables.map(|numbers| {
+            let (_, suffix) = suffixes.next().expect("a name for each moment");
             module.push_table(format!("{name}_{suffix}"), numbers)
         });
         let readers = MOMENTS.map(|(moment, suffix)| {

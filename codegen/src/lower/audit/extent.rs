@@ -2,7 +2,8 @@
 
 use super::super::bands::Bands;
 use super::super::place::scattered;
-use super::truth::{ASKEW, displayed, values};
+use super::places::ASKEW;
+use super::truth::{displayed, measured};
 use crate::cpu::Footprint;
 use crate::ir::Program;
 
@@ -17,9 +18,19 @@ const SHARES: [f64; 2] = [0.1, 0.7];
 const BELOW: i32 = 5;
 const ABOVE: i32 = 3;
 
-/// The bands of a texture, and how far away from the origin it is looked at, in uv: from the mean
-/// square difference of its points by their distance (the structure function).
-pub(super) fn bands(point: &Program) -> (Bands, f64) {
+/// How large a texture is.
+pub(super) struct Extent {
+    /// The sizes of pixels at which it is looked at.
+    pub(super) bands: Bands,
+    /// How far away from the origin, in uv.
+    pub(super) distance: f64,
+    /// How many instructions a point of it takes.
+    pub(super) work: f64,
+}
+
+/// The extent of a texture, from the mean square difference of its points by their distance (the
+/// structure function).
+pub(super) fn extent(point: &Program) -> Extent {
     let mut footprints = Vec::with_capacity(PLACES * (DISTANCES + 1));
     for place in 0..PLACES {
         let at = scattered(place + 1).map(|x| 64.0 * x - 32.0);
@@ -30,7 +41,8 @@ pub(super) fn bands(point: &Program) -> (Bands, f64) {
             footprints.push(Footprint::point(there));
         }
     }
-    let values = values(point, &footprints);
+    let (values, steps) = measured(point, &footprints);
+    let work = steps as f64 / footprints.len() as f64;
     let squares: Vec<f64> = (1..=DISTANCES)
         .map(|distance| {
             let of_place = |values: &[f32]| {
@@ -45,13 +57,14 @@ pub(super) fn bands(point: &Program) -> (Bands, f64) {
         .collect();
     let largest = squares.iter().copied().fold(0.0, f64::max);
     if largest <= 0.0 {
-        return (
-            Bands {
+        return Extent {
+            bands: Bands {
                 finest: -10,
                 octaves: 2,
             },
-            16.0,
-        );
+            distance: 16.0,
+            work,
+        };
     }
     let [fine, coarse] = SHARES.map(|share| {
         let reaches = squares.iter().position(|&square| square >= share * largest);
@@ -64,5 +77,9 @@ pub(super) fn bands(point: &Program) -> (Bands, f64) {
         finest,
         octaves: octaves.clamp(2, 5),
     };
-    (bands, f64::from(coarse + 3).exp2().max(16.0))
+    Extent {
+        bands,
+        distance: f64::from(coarse + 3).exp2().max(16.0),
+        work,
+    }
 }

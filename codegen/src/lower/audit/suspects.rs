@@ -4,9 +4,9 @@ use super::super::bands::Bands;
 use super::super::sampled::Sampling;
 use super::super::torus::{self, Repeated};
 use super::super::{Compiler, Facts, NodeDef, Options, program, symbols};
+use super::places::Places;
 use super::truth::{Errors, GLANCE, Truth, values};
-use super::verdict::{TOLERANCE, Verdict, is_worse};
-use crate::cpu::Footprint;
+use super::verdict::{Verdict, is_off, is_worse};
 use mipless_graph::{Checked, Class, Graph, NodeId, Output, Source, Type};
 use rustc_hash::FxHashMap;
 
@@ -49,7 +49,7 @@ pub(super) fn readers(graph: &Graph) -> Vec<Vec<usize>> {
 
 /// The nodes whose own error is too large while those of their inputs are not.
 pub(super) fn beginnings(
-    (bands, footprints): (Bands, &[Footprint]),
+    places: &Places,
     graph: &Graph,
     catalogue: &[NodeDef],
     options: &Options,
@@ -76,28 +76,22 @@ pub(super) fn beginnings(
     let facts = Facts {
         repeated: facts.repeated.clone(),
         mixtures: facts.mixtures.clone(),
+        rehearses: facts.rehearses,
         ..Facts::of(&every)
     };
     let facts = &facts;
-    let truth = Truth::of(
-        GLANCE,
-        (bands, footprints),
-        &every,
-        catalogue,
-        options,
-        facts,
-    );
+    let truth = Truth::of(GLANCE, places, &every, catalogue, options, facts);
     let (point, floor) = (truth.errors(&truth.point), truth.floor());
     let closed = truth.errors(&values(
         &program(&every, catalogue, options, facts),
-        footprints,
+        &places.footprints,
     ));
     let bad: FxHashMap<usize, bool> = (every.outputs.iter().enumerate())
         .map(|(output, of)| {
             let bad = (0..Bands::COUNT).any(|band| {
                 let [closed, point, floor] =
                     [&closed, &point, &floor].map(|errors| errors[output][band]);
-                closed > TOLERANCE || is_worse(closed, point, floor)
+                is_off(closed, floor) || is_worse(closed, point, floor)
             });
             (of.node.index(), bad)
         })
@@ -119,7 +113,7 @@ pub(super) fn beginnings(
 /// The nodes of the outputs whose error is too large.
 pub(super) fn ends(
     graph: &Graph,
-    truth: &Truth,
+    truth: &Truth<'_>,
     [closed, point, floor]: [&Errors; 3],
     steady: &[bool],
 ) -> FxHashMap<usize, Sampling> {

@@ -2,59 +2,24 @@
 
 use super::super::bands::Bands;
 use super::super::drawn::{Drawn, Far};
-use super::super::place::scattered;
 use super::super::sampled::{POINTS, Sampling};
 use super::super::{Facts, Method, NodeDef, Options, program};
+use super::places::{LARGEST, PLACES, Places};
 use crate::cpu::{Evaluator, Footprint, Scratch};
 use crate::ir::Program;
 use mipless_graph::Graph;
+use std::ops::Range;
 
-/// Places of each size of footprint: the round ones, and the long ones askew.
-const ROUND: usize = 24;
-const LONG: usize = 8;
-const PLACES: usize = ROUND + LONG;
-/// The places of the two largest sizes.
-pub(super) const LARGEST: usize = 2 * PLACES;
-/// The least width of a window, in pixels.
-const WINDOW: f64 = 32.0;
-/// How much longer the long ones are than wide.
-const RATIO: f32 = 8.0;
-/// Cosines and sines of their directions, the same numbers everywhere.
-pub(super) const ASKEW: [[f32; 2]; 4] = [[0.8, 0.6], [-0.6, 0.8], [0.96, -0.28], [0.352, 0.936]];
-/// Points of the truth of a pixel: at first, and where that shows an error.
+/// Points of the truth of a pixel at first, and at most where that shows an error.
 pub(super) const GLANCE: u32 = 128;
 pub(super) const LOOK: u32 = 1024;
+/// The work that a truth is worth, in instructions of a lane: about a quarter of a second. What is
+/// larger than some hundred nodes is looked at less closely.
+const WORK: f64 = 8e8;
 /// How far off a mean may be far away, as a display shows it.
 pub(super) const BIASED: f64 = 0.004;
 /// What of an error may be left where a signal is drawn to its mean, for that to count.
 const BETTER: f64 = 0.7;
-
-/// The footprints at which a graph is audited, band after band: most of them in the unit square or,
-/// where pixels are large, in a window of so many of them; every fourth within a distance.
-pub(super) fn footprints(bands: Bands, distance: f64) -> Vec<Footprint> {
-    let mut footprints = Vec::new();
-    for band in 0..Bands::COUNT {
-        let size = bands.size(band);
-        for place in 0..PLACES {
-            let at = scattered(band * PLACES + place + 1);
-            let extent = match place % 4 {
-                3 => distance.max(WINDOW * f64::from(size)),
-                _ => 0.5 * (WINDOW * f64::from(size)).max(1.0),
-            };
-            let at = at.map(|x| 0.5 + extent * (2.0 * x - 1.0));
-            let (long, [cos, sin]) = match place {
-                0..ROUND => (1.0, [1.0, 0.0]),
-                _ => (RATIO, ASKEW[place % ASKEW.len()]),
-            };
-            footprints.push(Footprint {
-                du: [long * size * cos, long * size * sin],
-                dv: [-size * sin, size * cos],
-                ..Footprint::point(at)
-            });
-        }
-    }
-    footprints
-}
 
 /// The defaults of a program's parameters.
 fn parameters(program: &Program) -> Vec<f32> {
@@ -68,42 +33,74 @@ pub(super) fn values(program: &Program, footprints: &[Footprint]) -> Vec<Vec<f32
     values_with(program, footprints, &parameters(program))
 }
 
+/// The same, and how many instructions of a lane that took.
+pub(super) fn measured(program: &Program, footprints: &[Footprint]) -> (Vec<Vec<f32>>, u64) {
+    evaluated(program, footprints, &parameters(program))
+}
+
 /// The values of a program's results at footprints.
 pub(super) fn values_with(
     program: &Program,
     footprints: &[Footprint],
     parameters: &[f32],
 ) -> Vec<Vec<f32>> {
-    let mut values = Vec::new();
+    evaluated(program, footprints, parameters).0
+}
+
+fn evaluated(
+    program: &Program,
+    footprints: &[Footprint],
+    parameters: &[f32],
+) -> (Vec<Vec<f32>>, u64) {
+    let (mut values, mut scratch) = (Vec::new(), Scratch::new());
     Evaluator::<f32>::of_program(program).evaluate_footprints(
-        &mut Scratch::new(),
+        &mut scratch,
         footprints,
         parameters,
         &mut values,
     );
-    values
+    (values, scratch.work())
+}
+
+/// How many points a closer look at pixels takes, where a point takes so many instructions: more than
+/// a glance where that is worth its time.
+pub(super) fn look(work: f64) -> u32 {
+    let samples = WORK / (work.max(1.0) * (PLACES * Bands::COUNT) as f64);
+    let doublings = (samples / f64::from(GLANCE)).clamp(1.0, f64::from(LOOK / GLANCE));
+    GLANCE << doublings.log2().floor() as u32
+}
+
+/// The components of each output, among those of all.
+pub(super) fn components(graph: &Graph) -> Vec<Range<usize>> {
+    let mut end = 0;
+    (graph.outputs.iter())
+        .map(|output| {
+            let start = end;
+            end += output.ty.components();
+            start..end
+        })
+        .collect()
 }
 
 /// What is right at footprints, for the components of all outputs.
-pub(super) struct Truth {
+pub(super) struct Truth<'p> {
     mean: Vec<Vec<f32>>,
     /// The variance of points within a footprint.
     variance: Vec<Vec<f32>>,
     pub(super) point: Vec<Vec<f32>>,
-    /// Of each output, the first component and the one after the last.
-    outputs: Vec<[usize; 2]>,
+    outputs: Vec<Range<usize>>,
     /// How many points there are in a pixel.
     samples: u32,
-    bands: Bands,
+    places: &'p Places,
 }
 
 /// Of each output, its errors by band.
 pub(super) type Errors = Vec<[f64; Bands::COUNT]>;
 
-impl Truth {
+impl<'p> Truth<'p> {
     pub(super) fn of(
         samples: u32,
-        (bands, footprints): (Bands, &[Footprint]),
+        places: &'p Places,
         graph: &Graph,
         catalogue: &[NodeDef],
         options: &Options,
@@ -115,25 +112,18 @@ impl Truth {
                 moments,
                 ..*options
             };
-            values(&program(graph, catalogue, &options, facts), footprints)
+            let program = program(graph, catalogue, &options, facts);
+            values(&program, &places.footprints)
         };
         let mut mean = with(Method::Supersample(samples), true);
         let variance = mean.split_off(mean.len() / 2);
-        let mut end = 0;
-        let outputs = (graph.outputs.iter())
-            .map(|output| {
-                let start = end;
-                end += output.ty.components();
-                [start, end]
-            })
-            .collect();
         Self {
             mean,
             variance,
             point: with(Method::Point, false),
-            outputs,
+            outputs: components(graph),
             samples,
-            bands,
+            places,
         }
     }
 
@@ -155,24 +145,20 @@ impl Truth {
 
     /// The roots of the means of squares over the components of an output and the pixels of a band.
     fn over_bands(&self, square: impl Fn(usize, usize) -> f64) -> Errors {
-        let band = |[start, end]: [usize; 2], band: usize| {
-            let pixels = band * PLACES..(band + 1) * PLACES;
-            let all = (start..end).flat_map(|component| {
-                let square = &square;
-                pixels.clone().map(move |pixel| square(component, pixel))
-            });
-            (all.sum::<f64>() / ((end - start).max(1) * PLACES) as f64).sqrt()
+        let band = |output: usize, band: usize| {
+            let all = self.places(output, band);
+            let sum: f64 = all.map(|(i, pixel, share)| share * square(i, pixel)).sum();
+            (sum / self.outputs[output].len().max(1) as f64).sqrt()
         };
-        (self.outputs.iter())
-            .map(|&output| std::array::from_fn(|i| band(output, i)))
+        (0..self.outputs.len())
+            .map(|output| std::array::from_fn(|i| band(output, i)))
             .collect()
     }
 
     /// The means of an output's components over the largest footprints, which hold most of the
     /// texture.
     fn far(&self, output: usize) -> Vec<f64> {
-        let [start, end] = self.outputs[output];
-        (start..end)
+        self.components(output)
             .map(|component| mean_of_largest(&self.mean[component]))
             .collect()
     }
@@ -180,36 +166,35 @@ impl Truth {
     /// How far the means of an output's components are off over the largest footprints, as a display
     /// shows them; the largest.
     pub(super) fn far_bias(&self, output: usize, found: &[Vec<f32>]) -> f64 {
-        let [start, end] = self.outputs[output];
         let of = |component: usize| far_bias(&found[component], &self.mean[component]);
-        (start..end).map(of).fold(0.0, f64::max)
+        self.components(output).map(of).fold(0.0, f64::max)
     }
 
     /// The components of an output.
-    pub(super) fn components(&self, output: usize) -> std::ops::Range<usize> {
-        let [start, end] = self.outputs[output];
-        start..end
+    pub(super) fn components(&self, output: usize) -> Range<usize> {
+        self.outputs[output].clone()
     }
 
-    /// The components of an output at the places of a band.
-    fn places(&self, output: usize, band: usize) -> impl Iterator<Item = (usize, usize)> {
-        let [start, end] = self.outputs[output];
+    /// The components of an output at the places of a band, with the shares of these.
+    fn places(&self, output: usize, band: usize) -> impl Iterator<Item = (usize, usize, f64)> {
         let pixels = band * PLACES..(band + 1) * PLACES;
-        (start..end).flat_map(move |component| pixels.clone().map(move |pixel| (component, pixel)))
+        self.components(output).flat_map(move |component| {
+            let shares = pixels.clone().map(|pixel| self.places.shares[pixel]);
+            (pixels.clone().zip(shares)).map(move |(pixel, share)| (component, pixel, share))
+        })
     }
 
     /// How an output is best sampled: see [`super::sampled`].
     pub(super) fn sampling(&self, output: usize, is_steady: bool) -> Sampling {
-        let [start, _] = self.outputs[output];
+        let start = self.outputs[output].start;
         let far = self.far(output);
         let lost = std::array::from_fn(|band| {
             let (mut between, mut within) = (0.0, 0.0);
-            for (component, pixel) in self.places(output, band) {
+            for (component, pixel, share) in self.places(output, band) {
                 let variance = f64::from(self.variance[component][pixel]).max(0.0);
-                let mean = f64::from(self.mean[component][pixel]);
-                within += variance / POINTS as f64;
-                between +=
-                    (mean - far[component - start]).powi(2) - variance / f64::from(self.samples);
+                let apart = f64::from(self.mean[component][pixel]) - far[component - start];
+                within += share * variance / POINTS as f64;
+                between += share * (apart * apart - variance / f64::from(self.samples));
             }
             let lost = within / (between.max(0.0) + within).max(1e-30);
             // The finest band holds all that is finer, of which a point is right.
@@ -225,20 +210,21 @@ impl Truth {
         }
     }
 
-    /// How an output's values are best drawn to its means, in the bands where that counts; `None`
-    /// where it counts in none.
+    /// How an output's values are best drawn to its means, in the bands of `within` where that counts;
+    /// `None` where it counts in none.
     pub(super) fn drawn(
         &self,
         output: usize,
         found: &[Vec<f32>],
-        is_steady: bool,
+        (is_steady, within): (bool, u32),
     ) -> Option<Drawn> {
-        let [start, end] = self.outputs[output];
+        let components = self.components(output);
+        let start = components.start;
         let means = self.far(output);
         let far = if is_steady {
             Far::Means(rounded(&means))
         } else {
-            let closed = (start..end).map(|component| mean_of_largest(&found[component]));
+            let closed = components.map(|component| mean_of_largest(&found[component]));
             let factors: Vec<f64> = (means.iter().zip(closed))
                 .map(|(far, closed)| far / closed)
                 .collect();
@@ -249,29 +235,32 @@ impl Truth {
             Far::Times(rounded(&factors))
         };
         let lost = std::array::from_fn(|band| {
-            let triples: Vec<[f64; 3]> = (self.places(output, band))
-                .map(|(component, pixel)| {
+            let triples: Vec<(f64, [f64; 3])> = (self.places(output, band))
+                .map(|(component, pixel, share)| {
                     let found = found[component][pixel];
                     let far = far.of(component - start, found, |x| x);
-                    [found, far, self.mean[component][pixel]].map(f64::from)
+                    let right = self.mean[component][pixel];
+                    (share, [found, far, right].map(f64::from))
                 })
                 .collect();
-            let (along, squares) = (triples.iter()).fold((0.0, 0.0), |(along, squares), t| {
-                let [found, far, right] = t;
+            let (mut along, mut squares) = (0.0, 0.0);
+            for (share, [found, far, right]) in &triples {
                 let way = far - found;
-                (along + way * (right - found), squares + way * way)
-            });
+                along += share * way * (right - found);
+                squares += share * way * way;
+            }
             let lost = stepped((along / squares.max(1e-30)).clamp(0.0, 1.0));
             let error = |lost: f64| {
-                let squares = triples.iter().map(|[found, far, right]| {
+                let squares = triples.iter().map(|(share, [found, far, right])| {
                     let drawn = found + lost * (far - found);
-                    (displayed(drawn as f32) - displayed(*right as f32)).powi(2)
+                    share * (displayed(drawn as f32) - displayed(*right as f32)).powi(2)
                 });
-                (squares.sum::<f64>() / triples.len().max(1) as f64).sqrt()
+                (squares.sum::<f64>() / self.outputs[output].len().max(1) as f64).sqrt()
             };
             let before = error(0.0);
             // The finest band holds all that is finer.
-            let counts = band > 0 && before > BIASED && error(f64::from(lost)) < BETTER * before;
+            let may = band > 0 && within >> band & 1 == 1 && before > BIASED;
+            let counts = may && error(f64::from(lost)) < BETTER * before;
             if counts { lost } else { 0.0 }
         });
         (lost != [0.0; Bands::COUNT]).then(|| self.drawn_to(far, lost))
@@ -281,7 +270,7 @@ impl Truth {
         Drawn {
             far,
             lost,
-            bands: self.bands,
+            bands: self.places.bands,
             near: Vec::new(),
         }
     }

@@ -25,7 +25,7 @@ impl Verdict {
         for (errors, (point, floor)) in errors.iter().zip(point.iter().zip(floor)) {
             for (error, (point, floor)) in errors.iter().zip(point.iter().zip(floor)) {
                 worse += usize::from(is_worse(*error, *point, *floor));
-                off += usize::from(*error > TOLERANCE);
+                off += usize::from(is_off(*error, *floor));
                 square += error * error;
             }
         }
@@ -41,6 +41,11 @@ impl Verdict {
         self.worse < other.worse
             || self.worse == other.worse && self.square < BETTER * BETTER * other.square
     }
+}
+
+/// Whether an error misses the tolerance, beyond the noise of what is held to be true.
+pub(super) fn is_off(error: f64, floor: f64) -> bool {
+    error > TOLERANCE.hypot(floor)
 }
 
 pub(super) fn is_worse(error: f64, point: f64, floor: f64) -> bool {

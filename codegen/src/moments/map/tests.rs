@@ -39,7 +39,8 @@ fn map(module: &mut Module, periodic: bool, build: Build) -> Map {
         vec![all]
     })));
     let of = function(module);
-    Map::new(module, "map", of, domain, vec![[0.0, 1.0]], &grid)
+    let tables = super::tables(&grid, domain, 1);
+    Map::new(module, "map", of, domain, vec![[0.0, 1.0]], tables)
 }
 
 /// A mean and a covariance (11, 12, 22).
