@@ -64,6 +64,14 @@ fn a_period_repeats_to_the_bit() {
         ),
         (r#"{"type":"valuenoise2d","inputs":{"period":7}}"#, 7),
         (
+            r#"{"type":"valuenoise2d","inputs":{"period":2,"period_v":3}}"#,
+            6,
+        ),
+        (
+            r#"{"type":"valuenoise2d","inputs":{"period":3,"period_v":1,"hash":"materialmaker","seed":5}}"#,
+            3,
+        ),
+        (
             r#"{"type":"turbulence2d","inputs":{"period":3,"octaves":2}}"#,
             3,
         ),

@@ -295,6 +295,11 @@ impl Body {
         let mut widest = Type::Float;
         let mut stops_are = Type::Float;
         for port in spec.inputs {
+            // Material Maker's hash is another number for another rounding, which is no law's; a
+            // period along v wants one along u.
+            if spec.name == "valuenoise2d" && matches!(port.name, "hash" | "period_v") {
+                continue;
+            }
             let choice = random.unit();
             let scalar = port.default == Default::Choice("float");
             let named = spec.output == OutputType::Named(port.name);

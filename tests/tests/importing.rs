@@ -85,6 +85,13 @@ fn truth_values_are_numbers() {
 }
 
 #[test]
+fn layers_without_room_and_without_an_alpha_behind_have_no_colour() {
+    let layers = r#"<disjointover name="n" type="color4"><input name="fg" type="color4" value="0.5, 1, 0, 2"/>
+        <input name="bg" type="color4" value="0.5, 1, 1, 0"/><input name="mix" type="float" value="0.5"/></disjointover>"#;
+    close(&value(layers, "color4", [0.5; 2]), &[0.25, 0.5, 0.5, 0.5]);
+}
+
+#[test]
 fn matrices_are_literals_that_are_worked_out() {
     let moved = format!(
         r#"{UV}<invertmatrix name="m" type="matrix33"><input name="in" type="matrix33" value="2,0,0, 0,2,0, 0,0,1"/></invertmatrix>
