@@ -179,14 +179,14 @@ fn codegen_names_no_node() {
 }
 
 /// The file of a node, by the line of its room that lists it: `clamp,` is a file of its own, and
-/// `rounding::floor,` is a row of a family's file; `brick with things,` says what it gives.
+/// `rounding::floor,` is a row of a family's file; `brick with things,` says what is summed.
 fn listed(room: &str, node: &str) -> Option<(String, String)> {
     let lines = read(&root().join(format!("nodes/src/{room}.rs")));
     // A name that is a keyword is written raw.
     let names = [node.to_owned(), format!("r#{node}")];
     lines.lines().find_map(|line| {
         let line = line.strip_prefix("    ")?.strip_suffix(',')?;
-        let line = line.strip_suffix(" with things").unwrap_or(line);
+        let line = line.split(" with ").next().unwrap_or(line);
         let (family, name) = line.split_once("::").unwrap_or((node, line));
         let file = format!("nodes/src/{room}/{family}.rs");
         names

@@ -99,6 +99,8 @@ pub(super) struct Steps {
     entries: Vec<NodeId>,
     /// Of which axis each whole part is, if it is read.
     axes: Vec<Option<usize>>,
+    /// Whether each is carried as an integer cell, as positions are, or as a number.
+    celled: Vec<bool>,
     sum: SumOfSteps,
 }
 
@@ -124,8 +126,10 @@ impl Steps {
         let wholes = roundings
             .iter()
             .map(|&node| graph.nodes[node].ty.components());
+        let count = wholes.sum();
         let mut steps = Self {
-            axes: (0..wholes.sum()).map(Some).collect(),
+            axes: (0..count).map(Some).collect(),
+            celled: vec![true; count],
             roundings: roundings.to_vec(),
             ends: Vec::new(),
             entries,
@@ -136,7 +140,7 @@ impl Steps {
         }
         // Which whole parts are read, and of which coordinates they are.
         let read = steps.read(compiler, ends);
-        steps.axes = axes(compiler, &steps, &read)?;
+        (steps.axes, steps.celled) = axes(compiler, &steps, &read)?;
         let mut components = 0;
         for &end in ends {
             let of_end = graph.nodes[end].ty.components();
@@ -166,6 +170,17 @@ impl Steps {
         ends: &[usize],
         is_live: bool,
     ) -> FunctionRef {
+        self.function_at(compiler, module, ends, is_live).0
+    }
+
+    /// The same, and whether it looks at other places than its own.
+    fn function_at(
+        &self,
+        compiler: &Compiler<'_>,
+        module: &mut Module,
+        ends: &[usize],
+        is_live: bool,
+    ) -> (FunctionRef, bool) {
         let graph = compiler.graph;
         let name = super::identifier(&graph.nodes[ends[0]].name);
         let b = &compiler.builder(format!("{name}_image"), "Functions of whole parts.");
@@ -183,19 +198,22 @@ impl Steps {
             lower.bundles[entry.index()] = Some(vec![Signal::constant(b, 0.0); components]);
         }
         let axis = |axis: &Option<usize>| axis.map_or(b.int(0), |axis| cell[axis]);
-        let mut wholes = self.axes.iter().map(axis);
+        let mut wholes = self.axes.iter().map(axis).zip(self.celled.iter().copied());
+        let mut looks_elsewhere = false;
         for node in self.region(compiler, ends) {
             if self.roundings.contains(&node) {
                 let count = graph.nodes[node].ty.components();
                 lower.algebra.wholes = Wholes::Given(wholes.by_ref().take(count).collect());
             }
+            lower.reads_elsewhere = false;
             lower.place_node(node);
+            looks_elsewhere |= lower.reads_elsewhere;
             lower.algebra.wholes = Wholes::Own;
         }
         let bundles = ends.iter().filter_map(|&node| lower.bundles[node].clone());
         let signals: Vec<Signal<'_>> = bundles.flatten().collect();
         value_results(b, &signals);
-        b.finish(module)
+        (b.finish(module), looks_elsewhere)
     }
 
     /// Which whole parts ends read.
@@ -228,10 +246,14 @@ impl Steps {
         if let Some(known) = known {
             return known;
         }
+        let mut looks_elsewhere = false;
         let module = alone(compiler, |compiler, module| {
-            self.function(compiler, module, ends, true);
+            (_, looks_elsewhere) = self.function_at(compiler, module, ends, true);
         });
-        let sampled = Arc::new(Sampled::of(&module, compiler, self.axes()));
+        let sampled = Arc::new(Sampled {
+            looks_elsewhere,
+            ..Sampled::of(&module, compiler, self.axes())
+        });
         if let Some(words) = words {
             let mut known = KNOWN.write().unwrap_or_else(PoisonError::into_inner);
             if known.len() < MOST_KNOWN {
@@ -256,9 +278,13 @@ impl Steps {
     }
 }
 
-/// Of which axis each whole part is that is read; `None` where they are of none, of more than two, or of
+/// Of which axis each whole part is that is read, and whether it is carried as a cell; `None` where they are of none, of more than two, or of
 /// numbers that are no coordinates: those that are bounded, or are the same everywhere.
-fn axes(compiler: &Compiler<'_>, steps: &Steps, read: &[bool]) -> Option<Vec<Option<usize>>> {
+fn axes(
+    compiler: &Compiler<'_>,
+    steps: &Steps,
+    read: &[bool],
+) -> Option<(Vec<Option<usize>>, Vec<bool>)> {
     let graph = compiler.graph;
     let b = &compiler.builder("coordinates", "What whole parts are taken of.");
     let mut module = Module::default();
@@ -304,7 +330,12 @@ fn axes(compiler: &Compiler<'_>, steps: &Steps, read: &[bool]) -> Option<Vec<Opt
             known.len() - 1
         })));
     }
-    (1..=2).contains(&known.len()).then_some(axes)
+    let celled = coordinates
+        .iter()
+        .map(|coordinate| coordinate.cell.is_some());
+    (1..=2)
+        .contains(&known.len())
+        .then(|| (axes, celled.collect()))
 }
 
 /// The cell of a number among all: far from those of others.
@@ -320,6 +351,8 @@ pub(super) fn scattered(index: Uint<'_>, axes: usize) -> Vec<Int<'_>> {
 /// A function of cells at many of them.
 pub(super) struct Sampled {
     axes: usize,
+    /// Whether it looks at other places than its own, so that it is none of cells alone.
+    looks_elsewhere: bool,
     /// Its components.
     values: Vec<Vec<f32>>,
 }
@@ -367,7 +400,11 @@ impl Sampled {
         let mut values = Vec::new();
         let evaluator = Evaluator::<f32>::new(module);
         evaluator.evaluate(&mut Scratch::new(), &inputs, cells[0].len(), &mut values);
-        Self { axes, values }
+        Self {
+            axes,
+            looks_elsewhere: false,
+            values,
+        }
     }
 
     /// Means and covariance of its components.
@@ -381,6 +418,9 @@ impl Sampled {
         // Independent numbers have 1/(2√π σ) of their variance left, along each axis.
         let left = (1.0 / (2.0 * std::f64::consts::PI.sqrt() * sd)).powi(self.axes as i32);
         let count = self.values[0].len() as f64;
+        if self.looks_elsewhere {
+            return false;
+        }
         self.values.iter().all(|values| {
             let mean = values.iter().map(|&x| f64::from(x)).sum::<f64>() / count;
             let apart: Vec<f64> = values.iter().map(|&x| f64::from(x) - mean).collect();

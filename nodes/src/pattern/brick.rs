@@ -43,7 +43,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         accuracy: "The mean is within 1e-3 for footprints along the axes and within 2e-3 for rotated \
             ones up to 10:1; longer ones are blurred across to 10:1 while they are narrow. Random numbers are \
             within 1e-3 under round footprints and 0.01 under rotated ones of 8:1 until they fade, and then \
-            within 0.035. With a bevel the standard \
+            within 0.04. With a bevel the standard \
             deviation is within 0.03. Held by `nodes/src/pattern/tests.rs` against dense sums.",
         references: "Heckbert 1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8. \
             Mehler 1866. Trefethen & Weideman 2014, *The Exponentially Convergent Trapezoidal Rule*. Names of \

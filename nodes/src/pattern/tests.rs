@@ -214,7 +214,7 @@ fn random_bricks_are_filtered_until_they_fade() {
         let inputs =
             json!({ "bond": bond, "columns": 1, "rows": 2, "output": "random", "seed": 3 });
         held("brick", &inputs, 0.3, [[1e-3; 2], [0.012, 0.006]]);
-        held("brick", &inputs, 1.0, [[0.04, 0.015], [0.035, 0.015]]);
+        held("brick", &inputs, 1.0, [[0.04, 0.015], [0.04, 0.015]]);
     }
 }
 

@@ -49,8 +49,8 @@ pub(crate) enum Wholes<'b> {
     Own,
     /// They themselves; the signals are noted.
     Noted(Vec<Signal<'b>>),
-    /// These, one after the other, whatever the signals are.
-    Given(VecDeque<Int<'b>>),
+    /// These, one after the other, whatever the signals are; whether each is a cell.
+    Given(VecDeque<(Int<'b>, bool)>),
 }
 
 impl<'b> Algebra<'b> {
@@ -60,10 +60,13 @@ impl<'b> Algebra<'b> {
             Wholes::Own => {}
             Wholes::Noted(signals) => signals.push(x.clone()),
             Wholes::Given(wholes) => {
-                let whole = wholes.pop_front().expect("a whole part for each signal");
+                let (whole, is_cell) = wholes.pop_front().expect("a whole part for each signal");
+                if !is_cell {
+                    return Signal::certain(whole.to_float());
+                }
                 return Signal {
                     cell: Some(whole),
-                    ..Signal::certain(self.b.float(0.0)).with_range(x.range)
+                    ..Signal::certain(self.b.float(0.0))
                 };
             }
         }

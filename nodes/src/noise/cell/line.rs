@@ -3,7 +3,7 @@
 //! A cell weighs what of the Gaussian lies in it, so that means, slopes and covariances are sums over
 //! the cells of a window, as in the plane; what does not fit fades to what cells have on average.
 
-use super::{REACH, around, coincidence, counted, deviation, fading, report};
+use super::{REACH, around, coincidence, counted, deviation, fading, inside, report};
 use mipless_codegen::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Scalar, Scalars};
 use mipless_codegen::moments::{Mode, Normal, Signal};
 use mipless_codegen::{Ensemble, Lower, pairs};
@@ -172,6 +172,11 @@ pub(crate) fn filtered<'b>(
     // The sums over the window.
     let key = format!("cells of a line {}", line.key);
     let body = lower.function(&key, |module| one_more(module, channels, line));
+    // A whole number is no face between two steps, but the second's.
+    let x = match line.rounding {
+        0.0 => inside(x, variance),
+        _ => x,
+    };
     let [start, count] = around(x, sd * REACH, line.most);
     let fade = fading(sd, line.most);
     let before = Sums::start([start - x, inverse], channels);

@@ -118,12 +118,12 @@ fn column(module: &mut Module, worley: Worley, image: &Image) -> FunctionRef {
     let b = &Builder::new("region", "One more region.");
     let index = b.uint_param("index");
     let sums = Sums::declare(b, image.channels());
-    let [first, row] = b.float_params(["first", "row"]);
+    let [column, row] = b.float_params(["first_column", "row"]);
     let footprint = Footprint::declare(b);
     let cells = Cells::declare(b);
     let centre = channels(b, "centre", image.channels());
     let parameters = image.declare(b);
-    let place = [first + index.to_float(), row];
+    let place = [column + index.to_float(), row];
     let cell = [
         cells.cell_x + place[0].to_int(),
         cells.cell_y + place[1].to_int(),

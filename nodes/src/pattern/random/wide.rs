@@ -19,8 +19,8 @@ const NARROWEST: f32 = 0.6;
 /// The most parts of half a brick along a coordinate.
 const MOST_PARTS: f32 = 4.0;
 
-/// How many parts of each half brick cost as much as a node of the integral over what the coordinates
-/// share.
+/// How many parts of each tile cost as much as a node of the integral over what the coordinates share. One
+/// alone never does: of next to no footprint no part is a Gaussian.
 const PARTS_A_NODE: f32 = 0.5;
 
 /// How far a footprint and a tile reach together, in standard deviations.
@@ -63,10 +63,9 @@ pub(super) fn parts<'b>(
         let needed = (other / area).sqrt() * (NARROWEST * half);
         needed.ceil().max(1.0)
     });
-    // Half bricks along a tile.
-    let halves = 2.0 * size(bond)[0];
-    let few = counts[0].le(MOST_PARTS * halves) & counts[1].le(MOST_PARTS);
-    let mut better = (counts[0] * counts[1]).le(taps.count.to_float() * (PARTS_A_NODE * halves));
+    // Of tiles of whole bricks twice as many.
+    let few = counts[0].le(2.0 * MOST_PARTS * size(bond)[0]) & counts[1].le(MOST_PARTS);
+    let mut better = (counts[0] * counts[1]).le(taps.count.to_float() * PARTS_A_NODE);
     for sd in taps.nodes.sd {
         better = better | sd.gt(ALONE[0]);
     }
