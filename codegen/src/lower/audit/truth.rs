@@ -136,10 +136,15 @@ impl<'p> Truth<'p> {
         })
     }
 
-    /// The errors that the truth itself has, at most.
+    /// The errors that the truth itself has, at most, as a display shows them: what a mean of many
+    /// points is off by is nothing where it is far beyond white.
     pub(super) fn floor(&self) -> Errors {
         self.over_bands(|component, pixel| {
-            f64::from(self.variance[component][pixel]).max(0.0) / f64::from(self.samples)
+            let mean = self.mean[component][pixel];
+            let variance = self.variance[component][pixel].max(0.0);
+            let sd = (variance / self.samples as f32).sqrt();
+            let [low, high] = [mean - sd, mean + sd].map(displayed);
+            (0.5 * (high - low)).powi(2)
         })
     }
 
