@@ -136,9 +136,16 @@ impl<'p> Truth<'p> {
         })
     }
 
-    /// The errors that the truth itself has, at most, as a display shows them: what a mean of many
-    /// points is off by is nothing where it is far beyond white.
+    /// The errors that the truth itself has, at most. Of what is far beyond white they are large, since
+    /// points say little of its mean.
     pub(super) fn floor(&self) -> Errors {
+        self.over_bands(|component, pixel| {
+            f64::from(self.variance[component][pixel]).max(0.0) / f64::from(self.samples)
+        })
+    }
+
+    /// The same, as a display shows them: nothing where all that a mean may be is beyond white.
+    pub(super) fn shown_floor(&self) -> Errors {
         self.over_bands(|component, pixel| {
             let mean = self.mean[component][pixel];
             let variance = self.variance[component][pixel].max(0.0);
