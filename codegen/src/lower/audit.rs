@@ -259,7 +259,7 @@ fn decide(
     let is_good = is_near && Verdict::of(&errors, &point, &floor).is_good();
     if is_good && !outputs.iter().any(is_biased) {
         let audit = Audit {
-            outputs: audited_outputs(bands, [&point, &errors, &errors, &floor]),
+            outputs: audited_outputs(bands, [&point, &errors, &errors, &glance.shown_floor()]),
             ..Audit::default()
         };
         let decision = Decision {
@@ -413,7 +413,10 @@ fn decide(
         .collect();
     replaced.sort_by_key(|replaced| (replaced.node, replaced.remedy));
     let audit = Audit {
-        outputs: audited_outputs(bands, [&point, &closed_errors, &best.errors, &floor]),
+        outputs: audited_outputs(
+            bands,
+            [&point, &closed_errors, &best.errors, &truth.shown_floor()],
+        ),
         replaced,
         is_too_large: false,
     };

@@ -18,6 +18,7 @@ use super::bands::Bands;
 use super::drawn::Drawn;
 use super::period::Periods;
 use super::place::scattered;
+use super::torus;
 use super::{Arguments, Bundle, Compiler, Lower, Method, value_results};
 use crate::float::Float as _;
 use crate::ir::{Bool, Builder, Float, FunctionRef, Module, Uint, Vec2};
@@ -70,7 +71,7 @@ impl<'g, 'b> Lower<'g, 'b> {
         let table = ("sampled_places", places as fn() -> Vec<f32>);
         let arguments = self.arguments.clone();
         let rows = (POINTS, table, turn);
-        let points = self.points(index, (closed.len(), &arguments), within, rows);
+        let points = self.points(index, (closed.len(), &arguments, None), within, rows);
         let points: Vec<Signal<'b>> = (points.into_iter().enumerate())
             .map(|(i, signal)| Signal {
                 mean: sampling.drawn.draw(i, signal.mean, lost),
@@ -87,7 +88,8 @@ impl<'g, 'b> Lower<'g, 'b> {
 
     /// A node that repeats by so many points that its signal is nearly right, where the footprint is
     /// `within` what is asked for, else `closed`: what is tried where in the end a map is read. Under
-    /// footprints that are wider than a period, of size `size`, the points are those of a period.
+    /// footprints that are wider than a period, of size `size`, the points are those of a period. All
+    /// are looked up in the period that the map is made of, so that what does not repeat is found out.
     pub(super) fn averaged(
         &mut self,
         index: usize,
@@ -115,7 +117,8 @@ impl<'g, 'b> Lower<'g, 'b> {
         let table = ("many_places", many_places as fn() -> Vec<f32>);
         let first = is_wide.select(MANY as u32, 0u32);
         let rows = (MANY, table, first);
-        let mut points = self.points(index, (closed.len(), &arguments), within, rows);
+        let of = (closed.len(), &arguments, Some(periods));
+        let mut points = self.points(index, of, within, rows);
         for point in &mut points {
             let flat = point.private + point.g.norm2();
             point.private = is_wide.select(flat, point.private);
@@ -130,15 +133,18 @@ impl<'g, 'b> Lower<'g, 'b> {
     fn points(
         &mut self,
         index: usize,
-        (components, arguments): (usize, &Arguments<'b>),
+        (components, arguments, periods): (usize, &Arguments<'b>, Option<Periods>),
         within: Bool<'b>,
         (count, (name, places), first): (usize, (&str, fn() -> Vec<f32>), Uint<'b>),
     ) -> Vec<Signal<'b>> {
         let compiler = self.compiler;
         let sample = self.function(&format!("sample of {index} by {name}"), |module| {
-            let point = point_function(compiler, module, index);
+            let point = match periods {
+                Some(periods) => torus::function(compiler, module, index, periods),
+                None => point_function(compiler, module, index),
+            };
             let table = module.table(name, places());
-            sample_function(compiler, module, &point, (index, table))
+            sample_function(compiler, module, (&point, periods), (index, table))
         });
         let b = self.b();
         let start = vec![b.float(0.0); Sums::COUNT * components];
@@ -278,6 +284,17 @@ fn point_function(compiler: &Compiler<'_>, module: &mut Module, index: usize) ->
     b.finish(module)
 }
 
+/// Where a place lies in its period.
+fn within_period<'b>(place: &Arguments<'b>, periods: Periods) -> [Float<'b>; 2] {
+    let footprint = &place.footprint;
+    let at = [0, 1].map(|axis| footprint.cell[axis].to_float() + footprint.fraction[axis]);
+    torus::inverse(periods).map(|row| {
+        let [of_u, of_v] = row.map(|x| x as f32);
+        let place = of_u * at[0] + of_v * at[1];
+        place - place.floor()
+    })
+}
+
 /// The points of every turn: places in standard deviations, to 12 significant bits, so that they are
 /// the same in f32 and f64.
 fn places() -> Vec<f32> {
@@ -314,7 +331,7 @@ fn many_places() -> Vec<f32> {
 fn sample_function(
     compiler: &Compiler<'_>,
     module: &mut Module,
-    point: &FunctionRef,
+    (point, periods): (&FunctionRef, Option<Periods>),
     (index, table): (usize, u32),
 ) -> FunctionRef {
     let count = point.results.len();
@@ -332,7 +349,11 @@ fn sample_function(
     let at = (turn + index) * 2u32;
     let place = [0u32, 1].map(|axis| b.load(table, at + axis));
     let sd = compiler.options.filter.sd();
-    let values = b.call(point, arguments.moved(place.map(|x| x * sd)).at_point());
+    let moved = arguments.moved(place.map(|x| x * sd)).at_point();
+    let values = match periods {
+        Some(periods) => b.call(point, within_period(&moved, periods)),
+        None => b.call(point, moved),
+    };
     let first = index.equals(0u32);
     for (i, (&value, sums)) in values.iter().zip(state.chunks(Sums::COUNT)).enumerate() {
         let sums = Sums::of(sums);

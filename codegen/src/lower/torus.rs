@@ -113,12 +113,8 @@ impl<'b> Lower<'_, 'b> {
             let tables = baked(shape, || tables(&grid, DOMAIN, ranges.len()));
             Map::new(module, &name, of, DOMAIN, ranges, tables)
         });
-        let [[a, c], [b, d]] = periods;
-        let area = a * d - b * c;
-        // uv = D p, so p = D⁻¹ uv.
-        let inverse = [[d / area, -b / area], [-c / area, a / area]];
         let surface = self.surface();
-        let place = inverse.map(|[of_u, of_v]| {
+        let place = inverse(periods).map(|[of_u, of_v]| {
             let parts = [(of_u, &surface[0]), (of_v, &surface[1])];
             let mut parts = (parts.into_iter())
                 .filter(|(by, _)| *by != 0.0)
@@ -138,8 +134,14 @@ impl<'b> Lower<'_, 'b> {
     }
 }
 
+/// D⁻¹ of uv = D p, with p in periods.
+pub(super) fn inverse([[a, c], [b, d]]: Periods) -> [[f64; 2]; 2] {
+    let area = a * d - b * c;
+    [[d / area, -b / area], [-c / area, a / area]]
+}
+
 /// The node as a function of two numbers, in periods.
-fn function(
+pub(super) fn function(
     compiler: &Compiler<'_>,
     module: &mut Module,
     index: usize,

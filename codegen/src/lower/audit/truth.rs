@@ -136,10 +136,22 @@ impl<'p> Truth<'p> {
         })
     }
 
-    /// The errors that the truth itself has, at most.
+    /// The errors that the truth itself has, at most. Of what is far beyond white they are large, since
+    /// points say little of its mean.
     pub(super) fn floor(&self) -> Errors {
         self.over_bands(|component, pixel| {
             f64::from(self.variance[component][pixel]).max(0.0) / f64::from(self.samples)
+        })
+    }
+
+    /// The same, as a display shows them: nothing where all that a mean may be is beyond white.
+    pub(super) fn shown_floor(&self) -> Errors {
+        self.over_bands(|component, pixel| {
+            let mean = self.mean[component][pixel];
+            let variance = self.variance[component][pixel].max(0.0);
+            let sd = (variance / self.samples as f32).sqrt();
+            let [low, high] = [mean - sd, mean + sd].map(displayed);
+            (0.5 * (high - low)).powi(2)
         })
     }
 
