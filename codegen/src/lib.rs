@@ -11,6 +11,7 @@ pub mod float;
 pub mod ir;
 mod lower;
 pub mod moments;
+pub mod shade;
 pub mod target;
 pub mod wgsl;
 

@@ -1,0 +1,505 @@
+//! What `shade` makes of a filtered surface, against facets that are shaded one by one.
+//!
+//! The closed forms run on the evaluator in f32 with the exact moments of the fields, so that errors are
+//! those of the closed forms. A bias is that of the mean over pixels, relative to the mean.
+
+use mipless_codegen::shade::{FIELDS, Lighting, terms_module};
+use mipless_tests::random::Random;
+use mipless_tests::surface::{
+    Averages, Direction, Field, Kind, Lit, Model, Moments, Torus, direction, dot, ggx, lambert,
+};
+
+/// 43 texels a wavelength.
+fn torus() -> Torus {
+    Torus::new(256, 6.0)
+}
+
+/// Every so many texels there is a pixel.
+const STRIDE: usize = 8;
+
+fn mean(all: &[f64]) -> f64 {
+    all.iter().sum::<f64>() / all.len() as f64
+}
+
+fn bias_of(model: &[f64], truth: &[f64]) -> f64 {
+    mean(model) / mean(truth) - 1.0
+}
+
+#[test]
+fn what_is_seen_of_a_surface_is_its_projection() {
+    let field = Field::new(&Torus::new(512, 8.0), Kind::Band, 0.4, 1);
+    for theta in [45.0, 75.0, 85.0] {
+        let view = direction(theta, 20.0);
+        let seen = mean(Lit::new(&field, view, view).seen()) / view[2];
+        println!("{theta} degrees: {seen:.4}");
+        assert!((seen - 1.0).abs() < 0.002, "{theta}: {seen}");
+    }
+}
+
+/// Lights around a view, which make 18 half vectors.
+fn pairs() -> Vec<(Direction, Direction)> {
+    let view = direction(30.0, 23.0);
+    let lights = [10.0, 30.0, 50.0].into_iter();
+    lights
+        .flat_map(|theta| (0..6).map(move |k| (theta, 60.0 * f64::from(k))))
+        .map(|(theta, azimuth)| (view, direction(theta, azimuth)))
+        .collect()
+}
+
+#[test]
+fn two_lobes_are_near_what_gaussian_slopes_mirror() {
+    let torus = Torus::new(512, 14.0);
+    let model = Model::new(&terms_module());
+    let alphas = [0.05_f64, 0.1, 0.2, 0.3, 0.4, 0.5];
+    for kind in [Kind::Band, Kind::Fractal, Kind::Directed] {
+        let field = Field::new(&torus, kind, 0.4, 2);
+        let moments = Moments::of_slopes(&field, &Averages::whole(&field), 0.0, false);
+        let mut sums = [[0.0; 2]; 6];
+        for (view, light) in pairs() {
+            let lit = Lit::new(&field, view, light);
+            for (sum, alpha) in sums.iter_mut().zip(alphas) {
+                let truth = lit.whole(&field.each(|_, s| ggx(s, alpha, view, light)));
+                let mut moments = moments.clone();
+                moments.fill("roughness", alpha.sqrt());
+                let found = model.between(&moments, view, light)[3][0];
+                sum[0] += (found - truth).powi(2);
+                sum[1] += truth.powi(2);
+            }
+        }
+        let errors = sums.map(|[error, all]| (error / all).sqrt());
+        println!("{kind:?}: {errors:.3?} at {alphas:?}");
+        assert!(
+            errors[..3].iter().all(|&error| error <= 0.10),
+            "{kind:?}: {errors:?}"
+        );
+        assert!(
+            errors.iter().all(|&error| error <= 0.16),
+            "{kind:?}: {errors:?}"
+        );
+    }
+}
+
+/// The angles of eyes and lights, and the azimuth between them.
+const PAIRS: [[f64; 3]; 7] = [
+    [0.0, 45.0, 0.0],
+    [30.0, 20.0, 90.0],
+    [45.0, 45.0, 180.0],
+    [45.0, 45.0, 0.0],
+    [60.0, 30.0, 90.0],
+    [60.0, 60.0, 30.0],
+    [75.0, 30.0, 180.0],
+];
+
+fn directions([view, light, between]: [f64; 3]) -> (Direction, Direction) {
+    (direction(view, 23.0), direction(light, 23.0 + between))
+}
+
+#[test]
+fn cracks_and_plateaus_are_flat_and_ramp() {
+    let torus = Torus::new(256, 8.0);
+    let model = Model::new(&terms_module());
+    let sds = [0.05, 0.1, 0.2, 0.35, 1.0];
+    for kind in [Kind::Cracks, Kind::Plateaus, Kind::Band] {
+        let field = Field::new(&torus, kind, 0.4, 4);
+        let averages = Averages::of(&field, STRIDE);
+        let moments: Vec<[Moments; 2]> = (sds.iter())
+            .map(|&sd| [false, true].map(|mixed| Moments::of_slopes(&field, &averages, sd, mixed)))
+            .collect();
+        let mut table = vec![[[[0.0; 2]; 2]; 4]; sds.len()];
+        for (view, light) in PAIRS.map(directions) {
+            let lit = Lit::new(&field, view, light);
+            for (row, alpha) in [0.05_f64, 0.2, 0.5, 0.0].into_iter().enumerate() {
+                let facets = field.each(|_, s| match alpha {
+                    0.0 => lambert(s, light),
+                    _ => ggx(s, alpha, view, light),
+                });
+                let truths = lit.pixels(&facets, &sds, STRIDE);
+                for ((moments, truth), table) in moments.iter().zip(&truths).zip(&mut table) {
+                    for (moments, table) in moments.iter().zip(&mut table[row]) {
+                        let mut moments = moments.clone();
+                        moments.fill("roughness", alpha.sqrt());
+                        let terms = model.between(&moments, view, light);
+                        let found: Vec<f64> = match alpha {
+                            0.0 => terms[0].iter().zip(&terms[4]).map(|(d, v)| d * v).collect(),
+                            _ => terms[3].clone(),
+                        };
+                        let off: Vec<f64> = found.iter().zip(truth).map(|(f, t)| f - t).collect();
+                        let square = mean(&off.iter().map(|x| x * x).collect::<Vec<_>>());
+                        table[0] += mean(&off).abs() / mean(truth) / 7.0;
+                        table[1] += square.sqrt() / mean(truth) / 7.0;
+                    }
+                }
+            }
+        }
+        for (sd, rows) in sds.iter().zip(&table) {
+            println!("{kind:?} {sd}: [one, mixed] [bias, rms] {rows:.3?}");
+            for (row, bound) in rows.iter().zip([0.30, 0.15, 0.12, 0.03]) {
+                let [one, mixed] = row;
+                assert!(mixed[1] <= 1.001 * one[1], "{kind:?} {sd}: {row:?}");
+                let holds = *sd < 0.35 || kind == Kind::Band || mixed[0] <= bound;
+                assert!(holds, "{kind:?} {sd}: {row:?} over {bound}");
+            }
+        }
+    }
+}
+
+#[test]
+fn light_reaches_what_smith_says() {
+    let torus = Torus::new(256, 8.0);
+    let model = Model::new(&terms_module());
+    let azimuths = [0.0, 10.0, 30.0, 60.0, 90.0, 180.0];
+    let mut biases = [0.0; 6];
+    let mut count = 0.0;
+    for (kind, sigma) in [(Kind::Band, 0.3), (Kind::Band, 0.6), (Kind::Fractal, 0.6)] {
+        let field = Field::new(&torus, kind, sigma, 5);
+        let moments = Moments::of_slopes(&field, &Averages::whole(&field), 0.0, false);
+        for (o, i) in [
+            (30.0, 60.0),
+            (60.0, 30.0),
+            (60.0, 60.0),
+            (60.0, 75.0),
+            (75.0, 60.0),
+        ] {
+            for (bias, azimuth) in biases.iter_mut().zip(azimuths) {
+                let (view, light) = directions([o, i, azimuth]);
+                // Of facets that face the light: the others' cosine is 0 already.
+                let faces = field.each(|_, s| f64::from(u8::from(lambert(s, light) > 0.0)));
+                let lit = Lit::new(&field, view, light);
+                let truth = lit.whole(&faces) / lit.unshadowed(&faces);
+                *bias += model.between(&moments, view, light)[4][0] - truth;
+            }
+            count += 1.0;
+        }
+    }
+    let biases = biases.map(|bias| bias / count);
+    println!("visibility at {azimuths:?}: {biases:.3?}");
+    assert!(
+        biases[..5].iter().all(|bias| bias.abs() <= 0.03),
+        "{biases:?}"
+    );
+}
+
+#[test]
+fn matt_surfaces_are_lit_right_to_60_degrees() {
+    let torus = Torus::new(256, 8.0);
+    let model = Model::new(&terms_module());
+    for (kind, sigma) in [
+        (Kind::Band, 0.3),
+        (Kind::Band, 0.6),
+        (Kind::Fractal, 0.5),
+        (Kind::Directed, 0.5),
+    ] {
+        let field = Field::new(&torus, kind, sigma, 6);
+        let moments = Moments::of_slopes(&field, &Averages::whole(&field), 0.0, false);
+        let (mut to_60, mut all) = ([0.0; 2], [0.0; 2]);
+        for o in [15.0, 45.0, 60.0, 75.0] {
+            for i in [15.0, 45.0, 60.0] {
+                for azimuth in [0.0, 90.0, 180.0] {
+                    let (view, light) = directions([o, i, azimuth]);
+                    let facets = field.each(|_, s| lambert(s, light));
+                    let truth = Lit::new(&field, view, light).whole(&facets);
+                    let terms = model.between(&moments, view, light);
+                    let found = terms[0][0] * terms[4][0];
+                    let sums = if o > 60.0 { &mut all } else { &mut to_60 };
+                    sums[0] += found - truth;
+                    sums[1] += truth;
+                }
+            }
+        }
+        let [near, far] = [to_60, all].map(|[off, sum]| off / sum);
+        println!("{kind:?} {sigma}: to 60 degrees {near:.4}, at 75 {far:.4}");
+        assert!(near.abs() <= 0.02, "{kind:?} {sigma}: {near}");
+    }
+}
+
+/// A colour of the slope: bright where it faces one way.
+fn facing(sigma: f64) -> impl Fn(f64, [f64; 2]) -> f64 {
+    move |_, s| 0.5 + 0.5 * (2.0 * s[0] / sigma).tanh()
+}
+
+#[test]
+fn colors_of_slopes_are_seen_with_their_slopes() {
+    let torus = Torus::new(256, 8.0);
+    let model = Model::new(&terms_module());
+    let sigma = 0.4;
+    let field = Field::new(&torus, Kind::Band, sigma, 7);
+    let color = field.each(facing(sigma));
+    for sd in [0.15, 0.35, 1.0] {
+        let averages = Averages::of(&field, STRIDE);
+        let plain = Moments::of_slopes(&field, &averages, sd, false);
+        let joint = with_color(&plain, &field, &averages, sd, &color, false);
+        let tinted = with_color(&plain, &field, &averages, sd, &color, true);
+        let mean_color = averages.filtered(&color, sd);
+        let mut biases = [0.0; 3];
+        for (o, i, azimuth) in EIGHT {
+            let (view, light) = directions([o, i, azimuth]);
+            let lit = Lit::new(&field, view, light);
+            let facets: Vec<f64> = (field.each(|_, s| lambert(s, light)).iter())
+                .zip(&color)
+                .map(|(f, c)| f * c)
+                .collect();
+            let truth = &lit.pixels(&facets, &[sd], STRIDE)[0];
+            for (bias, moments) in biases.iter_mut().zip([&plain, &joint, &tinted]) {
+                let terms = model.between(moments, view, light);
+                let found: Vec<f64> = (0..truth.len())
+                    .map(|k| mean_color[k] * terms[0][k] * terms[4][k])
+                    .collect();
+                *bias += bias_of(&found, truth).abs() / 8.0;
+            }
+        }
+        println!("colour of slope, {sd}: independent, joint, tinted {biases:.3?}");
+        assert!(
+            biases[2] <= 0.05 && biases[2] < 0.2 * biases[0],
+            "{sd}: {biases:?}"
+        );
+    }
+}
+
+/// Angles of eyes and lights, and the azimuth between them.
+const EIGHT: [(f64, f64, f64); 8] = [
+    (0.0, 30.0, 0.0),
+    (0.0, 60.0, 120.0),
+    (30.0, 45.0, 90.0),
+    (45.0, 45.0, 180.0),
+    (45.0, 60.0, 40.0),
+    (60.0, 30.0, 240.0),
+    (60.0, 60.0, 90.0),
+    (75.0, 45.0, 150.0),
+];
+
+/// The moments of a colour beside those of slopes: its covariance with them, and, where `third`, that
+/// with their squares.
+fn with_color(
+    moments: &Moments,
+    field: &Field,
+    averages: &Averages<'_>,
+    sd: f64,
+    color: &[f64],
+    third: bool,
+) -> Moments {
+    let mut moments = moments.clone();
+    let [u, v] = &field.slopes;
+    let filtered = |f: &dyn Fn(usize) -> f64| {
+        let all: Vec<f64> = (0..color.len()).map(f).collect();
+        averages.filtered(&all, sd)
+    };
+    let c = filtered(&|i| color[i]);
+    let s = [filtered(&|i| u[i]), filtered(&|i| v[i])];
+    let slopes = [u, v];
+    let first: Vec<Vec<f64>> = (0..2)
+        .map(|a| {
+            let product = filtered(&|i| color[i] * slopes[a][i]);
+            (0..c.len()).map(|k| product[k] - c[k] * s[a][k]).collect()
+        })
+        .collect();
+    moments.set("base_color", &[c.clone(), c.clone(), c.clone()]);
+    for (name, a) in [("cov_color_slope_u", 0), ("cov_color_slope_v", 1)] {
+        moments.set(name, &vec![first[a].clone(); 3]);
+    }
+    if third {
+        let pairs = [("uu", 0, 0), ("uv", 0, 1), ("vv", 1, 1)];
+        for (name, a, b) in pairs {
+            let triple = filtered(&|i| color[i] * slopes[a][i] * slopes[b][i]);
+            let second = filtered(&|i| slopes[a][i] * slopes[b][i]);
+            let of = |k: usize| {
+                triple[k] - c[k] * second[k] - s[a][k] * first[b][k] - s[b][k] * first[a][k]
+            };
+            let all: Vec<f64> = (0..c.len()).map(of).collect();
+            moments.set(&format!("cov_color_slope_{name}"), &vec![all; 3]);
+        }
+    }
+    moments
+}
+
+#[test]
+fn colors_of_heights_are_seen_where_heights_are_seen() {
+    let torus = Torus::new(256, 8.0);
+    let model = Model::new(&Lighting::Light.module());
+    let field = Field::new(&torus, Kind::Fractal, 0.6, 8);
+    let averages = Averages::whole(&field);
+    let count = field.height.len() as f64;
+    let sd = (field.height.iter().map(|h| h * h).sum::<f64>() / count).sqrt();
+    let color = field.each(|h, _| 0.5 + 0.15 * h / sd);
+    let plain = {
+        let mut moments = Moments::of_slopes(&field, &averages, 0.0, false);
+        moments.fill("base_color", 0.5);
+        moments
+    };
+    let mut seen = plain.clone();
+    seen.fill("cov_color_height", 0.15 * sd);
+    seen.fill("sigma_h", sd);
+    let mut biases = [0.0; 2];
+    for (o, i, azimuth) in [
+        (45.0, 60.0, 90.0),
+        (60.0, 60.0, 90.0),
+        (75.0, 60.0, 180.0),
+        (75.0, 75.0, 60.0),
+    ] {
+        let (view, light) = directions([o, i, azimuth]);
+        let lit = Lit::new(&field, view, light);
+        let facets = field.each(|_, s| lambert(s, light));
+        // Of the colour alone: what is matt is seen by the closed form as it is.
+        let tinted: Vec<f64> = facets.iter().zip(&color).map(|(f, c)| f * c).collect();
+        let truth = lit.whole(&tinted) / lit.whole(&facets);
+        let white = matt(&model, &plain, view, light) / 0.5;
+        for (bias, moments) in biases.iter_mut().zip([&plain, &seen]) {
+            *bias += (matt(&model, moments, view, light) / white - truth) / truth / 4.0;
+        }
+    }
+    println!("colour of height: independent, seen {biases:.4?}");
+    assert!(
+        biases[1].abs() <= 0.02 && biases[1].abs() < 0.3 * biases[0].abs(),
+        "{biases:?}"
+    );
+}
+
+/// The light of matt facets: what is mirrored does not depend on the base colour of what is no metal.
+fn matt(model: &Model, moments: &Moments, view: Direction, light: Direction) -> f64 {
+    let mut black = moments.clone();
+    black.fill("base_color", 0.0);
+    black.fill("cov_color_height", 0.0);
+    let arguments = [view, light, [1.0; 3]].concat();
+    let [of, without] = [moments, &black].map(|moments| model.evaluate(moments, &arguments)[0][0]);
+    of - without
+}
+
+/// The irradiance, over π, of a sky of radiance c₀ + c₁ x + … (see `Sky`), by direction.
+fn irradiance(sky: &[f64], [x, y, z]: Direction) -> f64 {
+    let second = [x * y, y * z, z * x, z * z - 1.0 / 3.0, x * x - y * y];
+    let first: f64 = [x, y, z].iter().zip(&sky[1..4]).map(|(n, c)| n * c).sum();
+    let second: f64 = second.iter().zip(&sky[4..9]).map(|(n, c)| n * c).sum();
+    sky[0] + 2.0 / 3.0 * first + 0.25 * second
+}
+
+#[test]
+fn skies_light_the_slopes_that_are_seen() {
+    let model = Model::new(&Lighting::Sky.module());
+    let mut random = Random::new(11);
+    let (mut squares, mut count) = (0.0, 0.0);
+    for _ in 0..300 {
+        let sky: Vec<f64> = (0..9)
+            .map(|k| {
+                if k == 0 {
+                    1.0
+                } else {
+                    random.within(-0.4, 0.4)
+                }
+            })
+            .collect();
+        let (sigma, ratio) = (random.within(0.1, 1.0), random.within(0.3, 1.0));
+        let (tilt, turn) = (random.within(0.0, 0.5), random.within(0.0, 3.0));
+        let view = direction(random.within(0.0, 80.0), random.within(0.0, 360.0));
+        let m = [tilt * turn.cos(), tilt * turn.sin()];
+        let (major, minor) = (sigma * sigma, (sigma * ratio).powi(2));
+        let (sin, cos) = (2.0 * turn).sin_cos();
+        let s = [
+            0.5 * (major * (1.0 + cos * cos) + minor * sin * sin),
+            0.5 * (major - minor) * sin * cos,
+            0.5 * (major * sin * sin + minor * (1.0 + cos * cos)),
+        ];
+        let truth = seen_irradiance(&sky, view, m, s);
+        let mut white = Moments::flat(1);
+        white.set("slope_mean", &m.map(|x| vec![x]));
+        white.set("slope_covariance", &s.map(|x| vec![x]));
+        let mut black = white.clone();
+        black.fill("base_color", 0.0);
+        let arguments: Vec<f64> = view
+            .into_iter()
+            .chain(sky.iter().flat_map(|&c| [c; 3]))
+            .collect();
+        let [of, without] =
+            [&white, &black].map(|moments| model.evaluate(moments, &arguments)[0][0]);
+        let open = 1.0 / (1.0 + 0.173 * (0.5 * (s[0] + s[2])).powf(0.722));
+        squares += ((of - without) / open - truth).powi(2);
+        count += 1.0;
+    }
+    let rms = (squares / f64::from(300)).sqrt();
+    println!("irradiance: {rms:.4} of 1 in {count} skies");
+    assert!(rms <= 0.01, "{rms}");
+}
+
+/// The mean irradiance of facets with slopes N(m, S) by the area that they show, by a dense sum.
+fn seen_irradiance(sky: &[f64], view: Direction, m: [f64; 2], s: [f64; 3]) -> f64 {
+    let x = s[0].sqrt();
+    let tilt = s[1] / x;
+    let y = (s[2] - tilt * tilt).sqrt();
+    let (mut sum, mut area) = (0.0, 0.0);
+    for i in -50..=50 {
+        for j in -50..=50 {
+            let [a, b] = [i, j].map(|k| f64::from(k) * 0.1);
+            let slope = [m[0] + x * a, m[1] + tilt * a + y * b];
+            let length = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+            let normal = [-slope[0] / length, -slope[1] / length, 1.0 / length];
+            let weight = (-0.5 * (a * a + b * b)).exp() * (dot(normal, view) * length).max(0.0);
+            sum += weight * irradiance(sky, normal);
+            area += weight;
+        }
+    }
+    sum / area
+}
+
+#[test]
+fn no_surface_gives_negative_light_or_no_number() {
+    let modules = [Lighting::Light, Lighting::Sky].map(|lighting| Model::new(&lighting.module()));
+    let mut random = Random::new(12);
+    let extreme = [0.0, 1.0, -1.0, 1e-9, 0.3, 2.0, 1e3, -1e3, 1e7, 1e-3];
+    for turn in 0..400 {
+        let mut moments = Moments::flat(64);
+        for (name, components) in FIELDS {
+            let all: Vec<Vec<f64>> = (0..components)
+                .map(|_| (0..64).map(|_| *random.choose(&extreme)).collect())
+                .collect();
+            moments.set(name, &all);
+        }
+        let [view, light] = [0, 1].map(|_| {
+            // Also along the surface, and from below.
+            let theta = *random.choose(&[0.0, 45.0, 89.99, 90.0, 120.0, 180.0]);
+            direction(theta, random.within(0.0, 360.0))
+        });
+        let color = [1.0; 3];
+        let sky = [0.5; 27];
+        for (model, rest) in modules
+            .iter()
+            .zip([[view, light, color].concat(), [&view[..], &sky].concat()])
+        {
+            let found = model.evaluate(&moments, &rest);
+            let bad = found
+                .iter()
+                .flatten()
+                .position(|x| !(x.is_finite() && *x >= 0.0));
+            assert_eq!(bad, None, "turn {turn}: {view:?} {light:?} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_footprint_of_nothing_is_a_facet() {
+    let model = Model::new(&terms_module());
+    let mut random = Random::new(13);
+    for _ in 0..200 {
+        let slope = [random.within(-0.8, 0.8), random.within(-0.8, 0.8)];
+        let (view, light) = (
+            direction(random.within(0.0, 60.0), 10.0),
+            direction(random.within(0.0, 60.0), 200.0),
+        );
+        let alpha = random.within(0.1, 1.0);
+        let mut moments = Moments::flat(1);
+        moments.set("slope_mean", &slope.map(|x| vec![x]));
+        moments.fill("roughness", f64::sqrt(alpha));
+        let terms = model.between(&moments, view, light);
+        let [x, y, z] = view;
+        let area = z - x * slope[0] - y * slope[1];
+        if area < 0.05 {
+            continue;
+        }
+        let truth = [lambert(slope, light), ggx(slope, alpha, view, light)];
+        let found = [terms[0][0] * terms[4][0], terms[3][0]];
+        for (found, truth) in found.into_iter().zip(truth) {
+            let near = (found - truth).abs() <= 2e-3 * (1.0 + truth);
+            assert!(
+                near,
+                "{slope:?} {view:?} {light:?} {alpha}: {found} {truth}"
+            );
+        }
+    }
+}
