@@ -2,6 +2,7 @@
 
 mod combine;
 mod gradient;
+mod microsurface;
 mod separate;
 
 room! {
@@ -19,4 +20,5 @@ room! {
     separate::separate4,
     slope,
     slopetonormal,
+    surface,
 }

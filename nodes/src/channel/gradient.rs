@@ -11,12 +11,12 @@ const RESOLUTION: f32 = 1e-5;
 /// Slopes beyond this are those of jumps, and vertical.
 const STEEPEST: f32 = 1e9;
 
-/// ∂in/∂u and ∂in/∂v, with (u, v) the node's texcoord; what the footprint removed of them are symbols that
+/// ∂/∂u and ∂/∂v of an input, with (u, v) the node's texcoord; what the footprint removed of them are symbols that
 /// both carry.
-pub(super) fn gradient<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> [Signal<'b>; 2] {
+pub(super) fn gradient<'b>(lower: &mut Lower<'_, 'b>, node: &Node, port: &str) -> [Signal<'b>; 2] {
     let spreads = lower.mode().spreads();
     let over = lower.widened(lower.b().float(RESOLUTION * RESOLUTION));
-    let height = lower.slopes(node, "in", &over, spreads)[0];
+    let height = lower.slopes(node, port, &over, spreads)[0];
     let texcoord = lower.slopes(node, "texcoord", &over, false);
     let frame = Frame::new([texcoord[0].mean, texcoord[1].mean]);
     let mut slopes = frame.0.map(|row| {
@@ -72,9 +72,14 @@ pub(super) fn normals<'b>(lower: &mut Lower<'_, 'b>, tilts: &[Signal<'b>; 2]) ->
     })
 }
 
-/// The class of what reads a gradient.
+/// The class of what reads the gradient of `in`.
 pub(super) fn class(inputs: &dyn InputView) -> Behaviour {
-    for port in ["in", "texcoord"] {
+    class_of(inputs, "in")
+}
+
+/// The class of what reads the gradient of an input.
+pub(super) fn class_of(inputs: &dyn InputView, height: &'static str) -> Behaviour {
+    for port in [height, "texcoord"] {
         if inputs.in_space(port) {
             return Behaviour::Refused {
                 port,

@@ -55,6 +55,6 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let scale = lower.number(node, "scale") * (-1.0 / 16.0);
-    let tilts = gradient(lower, node).map(|slope| slope * scale);
+    let tilts = gradient(lower, node, "in").map(|slope| slope * scale);
     normals(lower, &tilts)
 }

@@ -90,7 +90,7 @@ pub(super) struct Truth {
     /// The variance of points within a footprint.
     variance: Vec<Vec<f32>>,
     pub(super) point: Vec<Vec<f32>>,
-    /// Of each output, the first component and the one after the last.
+    /// Of each output, the first component and the one after the last; none of what is no mean of points.
     outputs: Vec<[usize; 2]>,
     /// How many points there are in a pixel.
     samples: u32,
@@ -124,7 +124,8 @@ impl Truth {
             .map(|output| {
                 let start = end;
                 end += output.ty.components();
-                [start, end]
+                let is_mean = graph.node(output.node).is_mean();
+                [start, if is_mean { end } else { start }]
             })
             .collect();
         Self {
