@@ -28,13 +28,13 @@ mod tests;
 mod visibility;
 
 pub use color::Tint;
-pub use module::{FIELDS, Lighting, SKY_TERMS, terms_module};
+pub use module::{FIELDS, Lighting, SKY_TERMS, absent, terms_module};
 pub use sky::{Sky, shade_sky};
 pub use visibility::{Seen, VisibleHeight, visible};
 
 use crate::ir::{Builder, Float, Sym2, Vec2};
 use color::schlick;
-use slopes::{Part, parts};
+use slopes::parts;
 
 /// A direction of the tangent frame, of unit length.
 pub type Direction<'b> = [Float<'b>; 3];
@@ -106,14 +106,31 @@ impl<'b> Surface<'b> {
     }
 }
 
+/// Whether facets hide each other from the eye and from the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hiding {
+    /// They do, as facets of a height do.
+    Facets,
+    /// They do not: what a host sees that shades points one by one without shadows, and what pictures of
+    /// such points are compared with.
+    Nothing,
+}
+
 /// The terms of one light, of a surface that is sane.
-fn terms<'b>(surface: &Surface<'b>, view: Direction<'b>, light: Direction<'b>) -> Terms<'b> {
-    let whole = Part::whole(surface);
-    let lit = visible(
-        &Seen::of(view, whole.mean, whole.covariance),
-        &Seen::of(light, whole.mean, whole.covariance),
-        [view, light],
-    );
+fn terms<'b>(
+    surface: &Surface<'b>,
+    view: Direction<'b>,
+    light: Direction<'b>,
+    hiding: Hiding,
+) -> Terms<'b> {
+    let (m, s) = (surface.slope, surface.covariance);
+    let lit = match hiding {
+        Hiding::Nothing => surface.roughness.literal(1.0),
+        Hiding::Facets => {
+            let seen = [view, light].map(|d| Seen::of(d, m, s));
+            visible(&seen[0], &seen[1], [view, light])
+        }
+    };
     let [flat, ramp] = parts(surface);
     let seen = [&flat, &ramp].map(|part| Seen::of(view, part.mean, part.covariance));
     let area = flat.share * seen[0].area + ramp.share * seen[1].area;
@@ -125,12 +142,15 @@ fn terms<'b>(surface: &Surface<'b>, view: Direction<'b>, light: Direction<'b>) -
         sum / area
     });
     let alpha = surface.alpha();
-    let mirrored = specular::numerator(&flat, alpha, view, light)
-        + specular::numerator(&ramp, alpha, view, light);
-    let plain = flat.share * flat.area(view) + ramp.share * ramp.area(view);
+    let mirrored = specular::numerator(&flat, alpha, view, light, hiding)
+        + specular::numerator(&ramp, alpha, view, light, hiding);
+    let shown = match hiding {
+        Hiding::Facets => flat.share * flat.area(view) + ramp.share * ramp.area(view),
+        Hiding::Nothing => area,
+    };
     Terms {
         diffuse: tinted,
-        specular: mirrored / plain.max(1e-4),
+        specular: mirrored / shown.max(1e-4),
         lit,
     }
 }
@@ -144,15 +164,16 @@ pub fn shade<'b>(
     view: Direction<'b>,
     light: Direction<'b>,
     light_color: Color<'b>,
+    hiding: Hiding,
 ) -> Color<'b> {
     let surface = surface.sane();
     let view = above(view);
     let shines = light[2].gt(0.0);
     let light = above(light);
-    let terms = terms(&surface, view, light);
+    let terms = terms(&surface, view, light, hiding);
     let half = half_vector(view, light);
     let fresnel = schlick(dot3(half, view));
-    let colors = color::of_light(&surface, view, light, half);
+    let colors = color::of_light(&surface, view, light, half, hiding);
     std::array::from_fn(|channel| {
         let [albedo, mirror] = colors[channel];
         let reflected = mirror + (1.0 - mirror) * fresnel;

@@ -147,6 +147,26 @@ impl Texture {
         }
     }
 
+    /// The parts of the graph's material by these names, of those that it has, as a texture of which they
+    /// are the outputs, whatever the graph's own are. `None` where the graph has no material.
+    ///
+    /// # Errors
+    /// The mistakes that only such parts have.
+    pub fn material(
+        &self,
+        parts: &[&str],
+        options: &CheckOptions,
+    ) -> Option<Result<Self, Vec<Diagnostic>>> {
+        let graph = self.checked.graph();
+        let graph = graph.with_parts(graph.materials.first()?, parts);
+        let checked = check(graph, options);
+        Some(checked.map(|checked| Self {
+            checked,
+            document: self.document.clone(),
+            warnings: Vec::new(),
+        }))
+    }
+
     /// The document, to edit and to save; load the result again.
     pub fn document(&self) -> &Document {
         &self.document

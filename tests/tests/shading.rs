@@ -3,7 +3,10 @@
 //! The closed forms run on the evaluator in f32 with the exact moments of the fields, so that errors are
 //! those of the closed forms. A bias is that of the mean over pixels, relative to the mean.
 
-use mipless_codegen::shade::{FIELDS, Lighting, terms_module};
+use mipless::target::{Target, translate};
+use mipless::wgsl::{Entry, Options as Emission, emit_shaded};
+use mipless::{CheckOptions, Options, Texture};
+use mipless_codegen::shade::{FIELDS, Hiding, Lighting, terms_module};
 use mipless_tests::random::Random;
 use mipless_tests::surface::{
     Averages, Direction, Field, Kind, Lit, Model, Moments, Torus, direction, dot, ggx, lambert,
@@ -49,7 +52,7 @@ fn pairs() -> Vec<(Direction, Direction)> {
 #[test]
 fn two_lobes_are_near_what_gaussian_slopes_mirror() {
     let torus = Torus::new(512, 14.0);
-    let model = Model::new(&terms_module());
+    let model = Model::new(&terms_module(Hiding::Facets));
     let alphas = [0.05_f64, 0.1, 0.2, 0.3, 0.4, 0.5];
     for kind in [Kind::Band, Kind::Fractal, Kind::Directed] {
         let field = Field::new(&torus, kind, 0.4, 2);
@@ -60,7 +63,7 @@ fn two_lobes_are_near_what_gaussian_slopes_mirror() {
             for (sum, alpha) in sums.iter_mut().zip(alphas) {
                 let truth = lit.whole(&field.each(|_, s| ggx(s, alpha, view, light)));
                 let mut moments = moments.clone();
-                moments.fill("roughness", alpha.sqrt());
+                moments.fill("mean_roughness", alpha.sqrt());
                 let found = model.between(&moments, view, light)[3][0];
                 sum[0] += (found - truth).powi(2);
                 sum[1] += truth.powi(2);
@@ -97,7 +100,7 @@ fn directions([view, light, between]: [f64; 3]) -> (Direction, Direction) {
 #[test]
 fn cracks_and_plateaus_are_flat_and_ramp() {
     let torus = Torus::new(256, 8.0);
-    let model = Model::new(&terms_module());
+    let model = Model::new(&terms_module(Hiding::Facets));
     let sds = [0.05, 0.1, 0.2, 0.35, 1.0];
     for kind in [Kind::Cracks, Kind::Plateaus, Kind::Band] {
         let field = Field::new(&torus, kind, 0.4, 4);
@@ -117,7 +120,7 @@ fn cracks_and_plateaus_are_flat_and_ramp() {
                 for ((moments, truth), table) in moments.iter().zip(&truths).zip(&mut table) {
                     for (moments, table) in moments.iter().zip(&mut table[row]) {
                         let mut moments = moments.clone();
-                        moments.fill("roughness", alpha.sqrt());
+                        moments.fill("mean_roughness", alpha.sqrt());
                         let terms = model.between(&moments, view, light);
                         let found: Vec<f64> = match alpha {
                             0.0 => terms[0].iter().zip(&terms[4]).map(|(d, v)| d * v).collect(),
@@ -146,7 +149,7 @@ fn cracks_and_plateaus_are_flat_and_ramp() {
 #[test]
 fn light_reaches_what_smith_says() {
     let torus = Torus::new(256, 8.0);
-    let model = Model::new(&terms_module());
+    let model = Model::new(&terms_module(Hiding::Facets));
     let azimuths = [0.0, 10.0, 30.0, 60.0, 90.0, 180.0];
     let mut biases = [0.0; 6];
     let mut count = 0.0;
@@ -182,7 +185,7 @@ fn light_reaches_what_smith_says() {
 #[test]
 fn matt_surfaces_are_lit_right_to_60_degrees() {
     let torus = Torus::new(256, 8.0);
-    let model = Model::new(&terms_module());
+    let model = Model::new(&terms_module(Hiding::Facets));
     for (kind, sigma) in [
         (Kind::Band, 0.3),
         (Kind::Band, 0.6),
@@ -220,7 +223,7 @@ fn facing(sigma: f64) -> impl Fn(f64, [f64; 2]) -> f64 {
 #[test]
 fn colors_of_slopes_are_seen_with_their_slopes() {
     let torus = Torus::new(256, 8.0);
-    let model = Model::new(&terms_module());
+    let model = Model::new(&terms_module(Hiding::Facets));
     let sigma = 0.4;
     let field = Field::new(&torus, Kind::Band, sigma, 7);
     let color = field.each(facing(sigma));
@@ -314,7 +317,7 @@ fn with_color(
 #[test]
 fn colors_of_heights_are_seen_where_heights_are_seen() {
     let torus = Torus::new(256, 8.0);
-    let model = Model::new(&Lighting::Light.module());
+    let model = Model::new(&Lighting::Light.module(Hiding::Facets));
     let field = Field::new(&torus, Kind::Fractal, 0.6, 8);
     let averages = Averages::whole(&field);
     let count = field.height.len() as f64;
@@ -327,7 +330,7 @@ fn colors_of_heights_are_seen_where_heights_are_seen() {
     };
     let mut seen = plain.clone();
     seen.fill("cov_color_height", 0.15 * sd);
-    seen.fill("sigma_h", sd);
+    seen.fill("sigma_height", sd);
     let mut biases = [0.0; 2];
     for (o, i, azimuth) in [
         (45.0, 60.0, 90.0),
@@ -373,7 +376,7 @@ fn irradiance(sky: &[f64], [x, y, z]: Direction) -> f64 {
 
 #[test]
 fn skies_light_the_slopes_that_are_seen() {
-    let model = Model::new(&Lighting::Sky.module());
+    let model = Model::new(&Lighting::Sky.module(Hiding::Facets));
     let mut random = Random::new(11);
     let (mut squares, mut count) = (0.0, 0.0);
     for _ in 0..300 {
@@ -440,7 +443,8 @@ fn seen_irradiance(sky: &[f64], view: Direction, m: [f64; 2], s: [f64; 3]) -> f6
 
 #[test]
 fn no_surface_gives_negative_light_or_no_number() {
-    let modules = [Lighting::Light, Lighting::Sky].map(|lighting| Model::new(&lighting.module()));
+    let modules = [Lighting::Light, Lighting::Sky]
+        .map(|lighting| Model::new(&lighting.module(Hiding::Facets)));
     let mut random = Random::new(12);
     let extreme = [0.0, 1.0, -1.0, 1e-9, 0.3, 2.0, 1e3, -1e3, 1e7, 1e-3];
     for turn in 0..400 {
@@ -474,7 +478,7 @@ fn no_surface_gives_negative_light_or_no_number() {
 
 #[test]
 fn a_footprint_of_nothing_is_a_facet() {
-    let model = Model::new(&terms_module());
+    let model = Model::new(&terms_module(Hiding::Facets));
     let mut random = Random::new(13);
     for _ in 0..200 {
         let slope = [random.within(-0.8, 0.8), random.within(-0.8, 0.8)];
@@ -485,7 +489,7 @@ fn a_footprint_of_nothing_is_a_facet() {
         let alpha = random.within(0.1, 1.0);
         let mut moments = Moments::flat(1);
         moments.set("slope_mean", &slope.map(|x| vec![x]));
-        moments.fill("roughness", f64::sqrt(alpha));
+        moments.fill("mean_roughness", f64::sqrt(alpha));
         let terms = model.between(&moments, view, light);
         let [x, y, z] = view;
         let area = z - x * slope[0] - y * slope[1];
@@ -500,6 +504,82 @@ fn a_footprint_of_nothing_is_a_facet() {
                 near,
                 "{slope:?} {view:?} {light:?} {alpha}: {found} {truth}"
             );
+        }
+    }
+}
+
+#[test]
+fn facets_that_hide_nothing_are_shaded_as_they_are() {
+    let torus = Torus::new(256, 8.0);
+    let model = Model::new(&terms_module(Hiding::Nothing));
+    for (kind, mixed) in [
+        (Kind::Band, false),
+        (Kind::Fractal, false),
+        (Kind::Cracks, true),
+    ] {
+        let field = Field::new(&torus, kind, 0.4, 4);
+        let moments = Moments::of_slopes(&field, &Averages::whole(&field), 0.0, mixed);
+        let mut errors = [[0.0; 2]; 4];
+        let around = [70.0, 80.0].into_iter().flat_map(|theta| {
+            [60.0, 70.0].map(|light| (direction(theta, 23.0), direction(light, 203.0)))
+        });
+        for (view, light) in pairs()
+            .into_iter()
+            .chain(PAIRS.map(directions))
+            .chain(around)
+        {
+            let lit = Lit::open(&field, view);
+            for (sums, alpha) in errors.iter_mut().zip([0.05_f64, 0.2, 0.5, 0.0]) {
+                let truth = lit.whole(&field.each(|_, s| match alpha {
+                    0.0 => lambert(s, light),
+                    _ => ggx(s, alpha, view, light),
+                }));
+                let mut moments = moments.clone();
+                moments.fill("mean_roughness", alpha.sqrt());
+                let terms = model.between(&moments, view, light);
+                let found = if alpha == 0.0 {
+                    terms[0][0] * terms[4][0]
+                } else {
+                    terms[3][0]
+                };
+                sums[0] += (found - truth).powi(2);
+                sums[1] += truth.powi(2);
+            }
+        }
+        let errors = errors.map(|[error, all]| (error / all).sqrt());
+        println!("{kind:?}, nothing hidden: {errors:.3?}");
+        // Lights that meet the surface at 70 degrees from the normal are among them.
+        for (error, bound) in errors.into_iter().zip([0.08, 0.15, 0.24, 0.02]) {
+            assert!(error <= bound, "{kind:?}: {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn functions_that_shade_are_valid_for_every_target() {
+    let graph = r#"{ "version": 1, "name": "light",
+        "nodes": {
+            "noise": { "type": "noise2d" },
+            "surface": { "type": "surface", "inputs": { "height": { "node": "noise" }, "scale": 0.1 } } },
+        "outputs": { "material": { "node": "surface" } } }"#;
+    let texture = Texture::from_json(graph).expect("the graph has no mistakes");
+    let parts: Vec<&str> = FIELDS.iter().map(|(name, _)| *name).collect();
+    let material = texture.material(&parts, &CheckOptions::default());
+    let material = material.expect("a material").expect("without mistakes");
+    let program = material.compile(&Options::default());
+    for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
+        let shader = emit_shaded(&program, &Emission { entry });
+        for line in [
+            "fn light_shade(surface: LightOutputs, view: vec3f, light: vec3f, light_color: vec3f) -> vec3f",
+            "fn light_shade_sky(surface: LightOutputs, view: vec3f, sky: array<vec3f, 9>) -> vec3f",
+        ] {
+            assert!(shader.source.contains(line), "{line}: {}", shader.source);
+        }
+        for target in Target::ALL {
+            if entry == Entry::None && target.needs_entry() {
+                continue;
+            }
+            translate(&shader, target).unwrap_or_else(|error| panic!("{}: {error}", target.name()));
         }
     }
 }

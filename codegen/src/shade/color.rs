@@ -2,7 +2,7 @@
 
 use super::slopes::positive;
 use super::specular::{mirroring, regression};
-use super::{Color, Direction, Seen, Surface, VisibleHeight};
+use super::{Color, Direction, Hiding, Seen, Surface, VisibleHeight};
 use crate::ir::{Float, Sym2, Vec2};
 
 /// The reflectance of what is no metal, of a refractive index of 1.5.
@@ -72,10 +72,16 @@ pub(super) fn of_light<'b>(
     view: Direction<'b>,
     light: Direction<'b>,
     half: Direction<'b>,
+    hiding: Hiding,
 ) -> [[Float<'b>; 2]; 3] {
-    let seen = [view, light].map(|d| Seen::of(d, surface.slope, surface.covariance));
-    let height = VisibleHeight::of_both(&seen[0], &seen[1], [view, light]);
-    let colors = of_height(surface, &height);
+    let colors = match hiding {
+        Hiding::Nothing => surface.base_color,
+        Hiding::Facets => {
+            let seen = [view, light].map(|d| Seen::of(d, surface.slope, surface.covariance));
+            let height = VisibleHeight::of_both(&seen[0], &seen[1], [view, light]);
+            of_height(surface, &height)
+        }
+    };
     let (metallic, alpha) = (surface.metallic, surface.alpha());
     let offset = mirroring(half) - surface.slope;
     std::array::from_fn(|channel| {
@@ -96,8 +102,15 @@ pub(super) fn of_light<'b>(
 
 /// Of each channel the reflectance of what is matt, and that of mirrors head on, under a light from all
 /// sides: of the heights that the eye sees.
-pub(super) fn of_sky<'b>(surface: &Surface<'b>, view: &Seen<'b>) -> [[Float<'b>; 2]; 3] {
-    let colors = of_height(surface, &VisibleHeight::of(view.lambda));
+pub(super) fn of_sky<'b>(
+    surface: &Surface<'b>,
+    view: &Seen<'b>,
+    hiding: Hiding,
+) -> [[Float<'b>; 2]; 3] {
+    let colors = match hiding {
+        Hiding::Nothing => surface.base_color,
+        Hiding::Facets => of_height(surface, &VisibleHeight::of(view.lambda)),
+    };
     let metallic = surface.metallic;
     colors.map(|base| {
         [

@@ -1,16 +1,17 @@
 //! The functions of [`shade`](super) as modules: for the CPU evaluator, and to be written as shaders.
 
-use super::{Color, Sky, Surface, above, shade, shade_sky, terms};
+use super::{Color, Hiding, Sky, Surface, above, shade, shade_sky, terms};
 use crate::ir::{Builder, Float, Module, Sym2, Vec2};
 
-/// The numbers of a surface by name, in the order in which functions take them, with how many each has.
-/// Covariances of colour have one vector of the three channels for each component of the slope.
+/// The numbers of a surface by name, in the order in which functions take them, with how many each has:
+/// the names are those of a material's parts. Covariances of colour have one vector of the three channels
+/// for each component of the slope.
 pub const FIELDS: [(&str, usize); 15] = [
     ("base_color", 3),
-    ("roughness", 1),
-    ("metallic", 1),
-    ("occlusion", 1),
-    ("emission", 3),
+    ("mean_roughness", 1),
+    ("mean_metallic", 1),
+    ("mean_occlusion", 1),
+    ("mean_emission", 3),
     ("slope_mean", 2),
     ("slope_covariance", 3),
     ("slope_share", 1),
@@ -20,8 +21,17 @@ pub const FIELDS: [(&str, usize); 15] = [
     ("cov_color_slope_uv", 3),
     ("cov_color_slope_vv", 3),
     ("cov_color_height", 3),
-    ("sigma_h", 1),
+    ("sigma_height", 1),
 ];
+
+/// What stands for a number of a surface that nothing gives: a white, smooth, matt one.
+pub fn absent(field: &str) -> f32 {
+    match field {
+        "base_color" | "mean_occlusion" | "slope_share" => 1.0,
+        "mean_roughness" => 0.5,
+        _ => 0.0,
+    }
+}
 
 /// How many coefficients a sky has for each channel.
 pub const SKY_TERMS: usize = 9;
@@ -47,16 +57,19 @@ impl Lighting {
     }
 
     /// A module whose entry gives the linear colour of a surface under this light.
-    pub fn module(self) -> Module {
+    pub fn module(self, hiding: Hiding) -> Module {
         let b = &Builder::new(self.name(), self.doc());
         let surface = declared(b);
         let view = params(b, "view");
         let color = match self {
-            Self::Light => shade(surface, view, params(b, "light"), params(b, "light_color")),
+            Self::Light => {
+                let [light, color] = ["light", "light_color"].map(|name| params(b, name));
+                shade(surface, view, light, color, hiding)
+            }
             Self::Sky => {
                 let sky: [Float<'_>; 3 * SKY_TERMS] = params(b, "sky");
                 let channel = |c| std::array::from_fn(|k| sky[3 * k + c]);
-                shade_sky(surface, view, &Sky([0, 1, 2].map(channel)))
+                shade_sky(surface, view, &Sky([0, 1, 2].map(channel)), hiding)
             }
         };
         b.results(["r", "g", "b"], color);
@@ -82,11 +95,11 @@ impl Lighting {
 
 /// A module whose entry gives the [terms](super::Terms) of a surface under a light: three of matt facets,
 /// one of mirrors, and the share that is lit.
-pub fn terms_module() -> Module {
+pub fn terms_module(hiding: Hiding) -> Module {
     let b = &Builder::new("terms", "What a surface makes of a light.");
     let surface = declared(b).sane();
     let [view, light] = ["view", "light"].map(|name| above(params(b, name)));
-    let terms = terms(&surface, view, light);
+    let terms = terms(&surface, view, light, hiding);
     b.results(["r", "g", "b"], terms.diffuse);
     b.result("specular", terms.specular);
     b.result("lit", terms.lit);

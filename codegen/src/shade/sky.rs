@@ -2,7 +2,7 @@
 
 use super::color::{self, Tint, schlick};
 use super::slopes::{nodes, normal, parts};
-use super::{Color, Direction, Seen, Surface, above, dot3};
+use super::{Color, Direction, Hiding, Seen, Surface, above, dot3};
 use crate::ir::Float;
 
 /// The radiance of a sky by direction, a polynomial of the tangent frame: of each channel the
@@ -44,10 +44,15 @@ fn occlusion(variance: Float<'_>) -> Float<'_> {
 /// Matt facets see irradiance, whose first degree is ⅔ and whose second ¼ of the radiance's (Ramamoorthi
 /// & Hanrahan 2001). Mirrors see the radiance around the reflected direction, of which GGX leaves
 /// 1 − α²/3 and 1 − ¾ α²: all for a mirror, and for α = 1 what a matt facet sees.
-pub(super) fn under<'b>(surface: &Surface<'b>, view: Direction<'b>, sky: &Sky<'b>) -> Color<'b> {
+fn under<'b>(
+    surface: &Surface<'b>,
+    view: Direction<'b>,
+    sky: &Sky<'b>,
+    hiding: Hiding,
+) -> Color<'b> {
     let view = above(view);
     let whole = Seen::of(view, surface.slope, surface.covariance);
-    let colors = color::of_sky(surface, &whole);
+    let colors = color::of_sky(surface, &whole, hiding);
     let b = surface.roughness.builder();
     let a = surface.alpha().square();
     let cosine = [b.float(2.0 / 3.0), b.float(0.25)];
@@ -87,7 +92,10 @@ pub(super) fn under<'b>(surface: &Surface<'b>, view: Direction<'b>, sky: &Sky<'b
         }
     }
     let [xx, _, yy] = surface.covariance.0;
-    let open = surface.occlusion * occlusion(0.5 * (xx + yy));
+    let open = match hiding {
+        Hiding::Facets => surface.occlusion * occlusion(0.5 * (xx + yy)),
+        Hiding::Nothing => surface.occlusion,
+    };
     std::array::from_fn(|channel| {
         let [albedo, _] = colors[channel];
         (open * (albedo * matt[channel] + mirrored[channel])).max(0.0)
@@ -95,6 +103,11 @@ pub(super) fn under<'b>(surface: &Surface<'b>, view: Direction<'b>, sky: &Sky<'b
 }
 
 /// The same of a surface whose numbers may be anything.
-pub fn shade_sky<'b>(surface: Surface<'b>, view: Direction<'b>, sky: &Sky<'b>) -> Color<'b> {
-    under(&surface.sane(), view, sky)
+pub fn shade_sky<'b>(
+    surface: Surface<'b>,
+    view: Direction<'b>,
+    sky: &Sky<'b>,
+    hiding: Hiding,
+) -> Color<'b> {
+    under(&surface.sane(), view, sky, hiding)
 }

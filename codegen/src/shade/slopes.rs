@@ -15,15 +15,6 @@ pub(super) struct Part<'b> {
 }
 
 impl<'b> Part<'b> {
-    /// All facets as one Gaussian.
-    pub(super) fn whole(surface: &Surface<'b>) -> Self {
-        Self {
-            share: surface.roughness.literal(1.0),
-            mean: surface.slope,
-            covariance: surface.covariance,
-        }
-    }
-
     /// The area that the mean facet shows to a direction: with what hides facets it is that of all of
     /// them, whatever their slopes are.
     pub(super) fn area(&self, [x, y, z]: Direction<'b>) -> Float<'b> {

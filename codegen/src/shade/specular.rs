@@ -1,7 +1,7 @@
 //! Mirroring facets: GGX over Gaussian slopes.
 
-use super::slopes::Part;
-use super::{Direction, dot3, half_vector};
+use super::slopes::{Part, normal};
+use super::{Direction, Hiding, dot3, half_vector};
 use crate::ir::{Float, Sym2, Vec2, dot};
 use std::f32::consts::{PI, TAU};
 
@@ -123,19 +123,47 @@ fn density<'b>(alpha: Float<'b>, s: Sym2<'b>, [x, y, z]: Direction<'b>) -> Float
 }
 
 /// π D G₂/4 of a part of the facets, over the area of the mesh: what it mirrors of a light, times the
-/// area that it shows. G₂ is the height-correlated one of the widened roughness.
+/// area that it shows. G₂ is the height-correlated one of the widened roughness; where facets hide
+/// nothing, that of a facet alone which mirrors the light.
 pub(super) fn numerator<'b>(
     part: &Part<'b>,
     alpha: Float<'b>,
     view: Direction<'b>,
     light: Direction<'b>,
+    hiding: Hiding,
 ) -> Float<'b> {
     let frame = Frame::of(part);
+    let s = frame.covariance;
     let [o, i, h] = [view, light, half_vector(view, light)].map(|d| frame.within(d));
-    let a = raised(frame.covariance * 2.0, alpha.square());
-    let seen = facing(frame.covariance, o) * facing(frame.covariance, i)
-        / (1.0 + lambda(a, o) + lambda(a, i));
-    part.share * frame.stretch * density(alpha, frame.covariance, h) * seen * (0.25 * PI)
+    let (hidden, stretch) = match hiding {
+        Hiding::Facets => {
+            let a = raised(s * 2.0, alpha.square());
+            (lambda(a, o) + lambda(a, i), frame.stretch)
+        }
+        Hiding::Nothing => {
+            let (mirrors, slope) = (mirroring(h), blurred(s, alpha, mirroring(h)));
+            let facet = normal(slope);
+            let one = |d| round_lambda(alpha, dot3(facet, d));
+            // A facet's lobe as a density of slopes: of its own plane's area, against the mesh's.
+            let own = (1.0 + slope.norm2()) / (1.0 + slope.dot(mirrors)).max(1e-2);
+            (one(o) + one(i), frame.stretch * own)
+        }
+    };
+    let seen = facing(s, o) * facing(s, i) / (1.0 + hidden);
+    part.share * stretch * density(alpha, s, h) * seen * (0.25 * PI)
+}
+
+/// Smith's Λ of GGX with round roughness.
+fn round_lambda<'b>(alpha: Float<'b>, cosine: Float<'b>) -> Float<'b> {
+    let tangent = 1.0 / cosine.max(1e-3).square() - 1.0;
+    0.5 * ((1.0 + alpha.square() * tangent.max(0.0)).sqrt() - 1.0)
+}
+
+/// S (S + ½ α² I)⁻¹ s: the mean slope of the facets that mirror as one of slope s would, where
+/// roughness blurs which do.
+fn blurred<'b>(s: Sym2<'b>, alpha: Float<'b>, slope: Vec2<'b>) -> Vec2<'b> {
+    let [xx, xy, yy] = s.0;
+    Vec2([Vec2([xx, xy]), Vec2([xy, yy])].map(|row| regression(row, s, alpha, slope)))
 }
 
 /// The slope of the facets that mirror the light into the eye: −h_xy/h_z.

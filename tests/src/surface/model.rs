@@ -17,7 +17,7 @@ impl Moments {
     /// Of a white, matt, flat surface, for so many pixels.
     pub fn flat(pixels: usize) -> Self {
         let default = |name: &str| match name {
-            "base_color" | "roughness" | "occlusion" | "slope_share" => 1.0,
+            "base_color" | "mean_roughness" | "mean_occlusion" | "slope_share" => 1.0,
             _ => 0.0,
         };
         let field = |&(name, components)| vec![vec![default(name); pixels]; components];
