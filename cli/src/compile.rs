@@ -6,7 +6,7 @@ use crate::report::Report;
 use crate::sources::Sources;
 use crate::value;
 use clap::{Args, ValueEnum};
-use mipless::target::{Manifest, Target, TranslateError, translate};
+use mipless::target::{Manifest, Target, TranslateError, validate};
 use mipless::wgsl::{self, Entry};
 use mipless::{Diagnostic, Method, Options, PixelFilter, Texture};
 use mipless_runtime::image_file::write_all;
@@ -180,13 +180,15 @@ impl<'a> Job<'a> {
             listed.insert(key.to_owned(), file.clone().into());
             files.push((out.join(file), bytes));
         };
+        let invalid = |error: TranslateError| {
+            let message = format!("the shader is not valid: {error}");
+            let diagnostic = Diagnostic::error("invalid-shader", message)
+                .help("this is a bug of the compiler; please report it with the graph");
+            Mistake::graph(path, vec![diagnostic])
+        };
+        let validated = validate(&shader.source).map_err(|error| invalid(error.into()))?;
         for &target in &self.targets {
-            let bytes = translate(&shader, target).map_err(|error| {
-                let message = format!("the shader is not valid: {error}");
-                let diagnostic = Diagnostic::error("invalid-shader", message)
-                    .help("this is a bug of the compiler; please report it with the graph");
-                Mistake::graph(path, vec![diagnostic])
-            })?;
+            let bytes = validated.translate(&shader, target).map_err(invalid)?;
             let stage = shader.entry_point.as_ref().map(|entry| entry.stage);
             file(target.name(), target.extension(stage), bytes);
         }

@@ -5,7 +5,7 @@ use crate::random::Random;
 use crate::shown::wavelength;
 use crate::timing::defaults;
 use crate::tolerance::{FAR_FIELD, LEFT_OUT, RANGE, ROUNDING, SPREAD, VANISHING};
-use mipless::target::{Target, translate, validate};
+use mipless::target::{Target, validate};
 use mipless::wgsl::{Entry, Options as Emission, emit};
 use mipless::{Footprint, Literal, Method, Options, Program, Texture};
 use mipless_codegen::cpu::eval_program;
@@ -196,8 +196,12 @@ fn shaders(program: &Program, report: &mut Report<'_>) {
     }
     for entry in [Entry::Fragment, Entry::Compute] {
         let shader = emit(program, &Emission { entry });
+        let validated = match validate(&shader.source) {
+            Ok(validated) => validated,
+            Err(error) => return report(Law::Shader, error.to_string()),
+        };
         for target in Target::ALL {
-            if let Err(error) = translate(&shader, target) {
+            if let Err(error) = validated.translate(&shader, target) {
                 return report(Law::Shader, format!("{}: {error}", target.name()));
             }
         }

@@ -1,6 +1,6 @@
 //! Whatever a graph, its nodes, inputs and outputs are called, every target compiles with every entry.
 
-use mipless::target::{Target, translate, validate};
+use mipless::target::{Target, validate};
 use mipless::wgsl::{Entry, Options as Emission, Shader, emit};
 use mipless::{Method, Options, Texture};
 use serde_json::{Value, json};
@@ -57,11 +57,18 @@ fn faults(graph: &Value) -> Vec<String> {
     }
     for entry in ENTRIES {
         let shader = shader(graph, Method::Point, entry);
+        let validated = match validate(&shader.source) {
+            Ok(validated) => validated,
+            Err(error) => {
+                faults.push(format!("{entry:?}: {error}"));
+                continue;
+            }
+        };
         for target in Target::ALL {
             if entry == Entry::None && target.needs_entry() {
                 continue;
             }
-            match translate(&shader, target) {
+            match validated.translate(&shader, target) {
                 Ok(text) if !text.is_empty() => {}
                 Ok(_) => faults.push(format!("{entry:?}: {} is empty", target.name())),
                 Err(error) => faults.push(format!("{entry:?}: {error}")),

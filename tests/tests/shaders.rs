@@ -91,8 +91,8 @@ fn targets(case: &Case, method: Method) -> Result<(), Failed> {
         let longest = longest_function(&shader.source);
         // naga's front end takes time quadratic in the declarations of one function.
         assert!(longest <= 300, "a function of {longest} statements");
+        let validated = validate(&shader.source)?;
         if entry == Entry::None {
-            validate(&shader.source)?;
             assert!(
                 !shader.source.contains("dpdx"),
                 "a derivative outside of a fragment shader"
@@ -104,7 +104,7 @@ fn targets(case: &Case, method: Method) -> Result<(), Failed> {
             if entry == Entry::None && target.needs_entry() {
                 continue;
             }
-            let translated = translate(&shader, target)?;
+            let translated = validated.translate(&shader, target)?;
             assert!(!translated.is_empty(), "{} is empty", target.name());
         }
     }

@@ -138,12 +138,24 @@ impl Map {
         let packing = Packing::new(ranges.len());
         let levels = module.table("map_levels", layout(&packing));
         let total = packing.header() + (0..LEVELS).map(texels).sum::<usize>();
+        let periodic = domain.periodic;
+        let (of_means, of_spreads, tried) = (Arc::clone(grid), Arc::clone(grid), Arc::clone(grid));
+        let means = move || bake::means(&of_means, periodic, &packing);
+        let spreads = LazyLock::new(move || bake::spreads(&of_spreads, periodic, &packing));
+        let baked = Arc::new((LazyLock::new(means), spreads));
+        let errors = {
+            let baked = Arc::clone(&baked);
+            LazyLock::new(move || bake::errors(&tried, &baked.0, &baked.1, periodic, &packing))
+        };
+        let errors = Arc::new(errors);
         let tables = MOMENTS.map(|(moment, suffix)| {
-            let (baked, tried) = (Arc::clone(grid), Arc::clone(grid));
-            let periodic = domain.periodic;
-            let bake = move || bake::table(&baked, moment, periodic, &packing);
-            let error = move |table: &[f32]| bake::error(&tried, table, moment, periodic, &packing);
-            let numbers = Numbers::lazy(total, bake).with_error(error);
+            let (baked, errors) = (Arc::clone(&baked), Arc::clone(&errors));
+            let table = move || match moment {
+                Moment::Mean => baked.0.clone(),
+                _ => baked.1[moment as usize - 1].clone(),
+            };
+            let error = move |_: &[f32]| errors[moment as usize];
+            let numbers = Numbers::lazy(total, table).with_error(error);
             module.push_table(format!("{name}_{suffix}"), numbers)
         });
         let readers = MOMENTS.map(|(moment, suffix)| {

@@ -1,6 +1,6 @@
 //! Translation of a shader into another shading language.
 
-use super::{ValidateError, validate};
+use super::{ValidateError, Validated, validate};
 use crate::wgsl::{BindingKind, Shader, Stage};
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::proc::BoundsCheckPolicies;
@@ -96,104 +96,115 @@ impl From<ValidateError> for TranslateError {
     }
 }
 
-/// Translates a shader. Bindings keep their numbers: GLSL's `binding`, HLSL's registers (space 0),
-/// Metal's buffer indices. Metal's compute shaders read the byte lengths of their arrays from
-/// buffer 8, in the order of the bindings.
+/// Validates a shader and translates it: see [`Validated::translate`].
 ///
 /// # Errors
 /// If the target needs an entry point that the shader has not, or naga rejects the shader.
 pub fn translate(shader: &Shader, target: Target) -> Result<Translated, TranslateError> {
-    if target.needs_entry() && shader.entry_point.is_none() {
-        return Err(TranslateError::NeedsEntry(target));
-    }
-    let validated = validate(&shader.source)?;
-    let (module, info) = (&validated.module, &validated.info);
-    let failed = |error: &dyn fmt::Display| TranslateError::BackEnd(target, error.to_string());
-    let entry = shader.entry_point.as_ref().map(|entry| {
-        let stage = match entry.stage {
-            Stage::Fragment => ShaderStage::Fragment,
-            Stage::Compute => ShaderStage::Compute,
+    validate(&shader.source)?.translate(shader, target)
+}
+
+impl Validated {
+    /// Translates the shader that this is naga's form of; for several targets it is read once.
+    /// Bindings keep their numbers: GLSL's `binding`, HLSL's registers (space 0), Metal's buffer
+    /// indices. Metal's compute shaders read the byte lengths of their arrays from buffer 8, in the
+    /// order of the bindings.
+    ///
+    /// # Errors
+    /// If the target needs an entry point that the shader has not, or naga's back end rejects it.
+    pub fn translate(&self, shader: &Shader, target: Target) -> Result<Translated, TranslateError> {
+        if target.needs_entry() && shader.entry_point.is_none() {
+            return Err(TranslateError::NeedsEntry(target));
+        }
+        let (module, info) = (&self.module, &self.info);
+        let failed = |error: &dyn fmt::Display| TranslateError::BackEnd(target, error.to_string());
+        let entry = shader.entry_point.as_ref().map(|entry| {
+            let stage = match entry.stage {
+                Stage::Fragment => ShaderStage::Fragment,
+                Stage::Compute => ShaderStage::Compute,
+            };
+            (stage, entry.name.clone())
+        });
+        let resources = || {
+            (shader.bindings.iter()).map(|b| {
+                (
+                    ResourceBinding {
+                        group: b.group,
+                        binding: b.binding,
+                    },
+                    b,
+                )
+            })
         };
-        (stage, entry.name.clone())
-    });
-    let resources = || {
-        (shader.bindings.iter()).map(|b| {
-            (
-                ResourceBinding {
-                    group: b.group,
-                    binding: b.binding,
-                },
-                b,
-            )
-        })
-    };
-    match target {
-        Target::Wgsl => Ok(shader.source.clone().into_bytes()),
-        Target::Spirv => {
-            let options = spv::Options {
-                lang_version: (1, 3),
-                flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
-                ..spv::Options::default()
-            };
-            let words = spv::write_vec(module, info, &options, None).map_err(|e| failed(&e))?;
-            Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
-        }
-        Target::Glsl => {
-            let options = glsl::Options {
-                version: glsl::Version::Desktop(450),
-                writer_flags: glsl::WriterFlags::empty(),
-                binding_map: resources().map(|(at, b)| (at, b.binding as u8)).collect(),
-                ..glsl::Options::default()
-            };
-            let (shader_stage, entry_point) = entry.ok_or(TranslateError::NeedsEntry(target))?;
-            let pipeline = glsl::PipelineOptions {
-                shader_stage,
-                entry_point,
-                multiview: None,
-            };
-            let policies = BoundsCheckPolicies::default();
-            let mut text = String::new();
-            glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies)
-                .and_then(|mut writer| writer.write())
-                .map_err(|e| failed(&e))?;
-            Ok(text.into_bytes())
-        }
-        Target::Hlsl => {
-            let options = hlsl::Options::default();
-            let pipeline = hlsl::PipelineOptions { entry_point: None };
-            let mut text = String::new();
-            hlsl::Writer::new(&mut text, &options, &pipeline)
-                .write(module, info, None)
-                .map_err(|e| failed(&e))?;
-            Ok(text.into_bytes())
-        }
-        Target::Msl => {
-            let resources = resources().map(|(at, binding)| {
-                let target = msl::BindTarget {
-                    buffer: Some(binding.binding as u8),
-                    mutable: binding.kind == BindingKind::Outputs,
-                    ..msl::BindTarget::default()
+        match target {
+            Target::Wgsl => Ok(shader.source.clone().into_bytes()),
+            Target::Spirv => {
+                let options = spv::Options {
+                    lang_version: (1, 3),
+                    flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
+                    ..spv::Options::default()
                 };
-                (at, target)
-            });
-            let slots = msl::EntryPointResources {
-                resources: resources.collect(),
-                sizes_buffer: Some(8),
-                ..msl::EntryPointResources::default()
-            };
-            let options = msl::Options {
-                lang_version: (2, 0),
-                per_entry_point_map: entry
-                    .into_iter()
-                    .map(|(_, name)| (name, slots.clone()))
-                    .collect(),
-                fake_missing_bindings: false,
-                ..msl::Options::default()
-            };
-            let pipeline = msl::PipelineOptions::default();
-            let (text, _) =
-                msl::write_string(module, info, &options, &pipeline).map_err(|e| failed(&e))?;
-            Ok(text.into_bytes())
+                let words = spv::write_vec(module, info, &options, None).map_err(|e| failed(&e))?;
+                Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
+            }
+            Target::Glsl => {
+                let options = glsl::Options {
+                    version: glsl::Version::Desktop(450),
+                    writer_flags: glsl::WriterFlags::empty(),
+                    binding_map: resources().map(|(at, b)| (at, b.binding as u8)).collect(),
+                    ..glsl::Options::default()
+                };
+                let (shader_stage, entry_point) =
+                    entry.ok_or(TranslateError::NeedsEntry(target))?;
+                let pipeline = glsl::PipelineOptions {
+                    shader_stage,
+                    entry_point,
+                    multiview: None,
+                };
+                let policies = BoundsCheckPolicies::default();
+                let mut text = String::new();
+                glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies)
+                    .and_then(|mut writer| writer.write())
+                    .map_err(|e| failed(&e))?;
+                Ok(text.into_bytes())
+            }
+            Target::Hlsl => {
+                let options = hlsl::Options::default();
+                let pipeline = hlsl::PipelineOptions { entry_point: None };
+                let mut text = String::new();
+                hlsl::Writer::new(&mut text, &options, &pipeline)
+                    .write(module, info, None)
+                    .map_err(|e| failed(&e))?;
+                Ok(text.into_bytes())
+            }
+            Target::Msl => {
+                let resources = resources().map(|(at, binding)| {
+                    let target = msl::BindTarget {
+                        buffer: Some(binding.binding as u8),
+                        mutable: binding.kind == BindingKind::Outputs,
+                        ..msl::BindTarget::default()
+                    };
+                    (at, target)
+                });
+                let slots = msl::EntryPointResources {
+                    resources: resources.collect(),
+                    sizes_buffer: Some(8),
+                    ..msl::EntryPointResources::default()
+                };
+                let options = msl::Options {
+                    lang_version: (2, 0),
+                    per_entry_point_map: entry
+                        .into_iter()
+                        .map(|(_, name)| (name, slots.clone()))
+                        .collect(),
+                    fake_missing_bindings: false,
+                    ..msl::Options::default()
+                };
+                let pipeline = msl::PipelineOptions::default();
+                let (text, _) =
+                    msl::write_string(module, info, &options, &pipeline).map_err(|e| failed(&e))?;
+                Ok(text.into_bytes())
+            }
         }
     }
 }

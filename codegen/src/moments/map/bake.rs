@@ -1,31 +1,57 @@
 //! Baking: separable convolutions of the samples in f64, one pair of kernels a level.
 
 use super::super::tabulated::{deviation, gaussian};
-use super::{Grid, LEVELS, MOST, Moment, Packing, SIDE, intervals, sigma};
+use super::{Grid, LEVELS, MOST, Packing, SIDE, intervals, sigma};
 
 /// How far a Gaussian reaches, in σ.
 const REACH: f64 = 4.5;
 /// A level is made from samples that are at least this many a σ.
-const DENSE: f64 = 8.0;
+const DENSE: f64 = 4.0;
 
-/// The table of a moment: the packing's header, then all levels, finest first.
-pub(super) fn table(grid: &Grid, moment: Moment, periodic: bool, packing: &Packing) -> Vec<f32> {
-    let components: Vec<Vec<f64>> = (grid.iter())
-        .map(|samples| {
-            let mut pyramid = Samples::new(samples, moment == Moment::Distortion);
-            let mut all = Vec::new();
-            for level in 0..LEVELS {
-                pyramid.coarsen(level);
-                all.extend(pyramid.level(level, moment, periodic));
+/// The table of the means: the packing's header, then all levels, finest first.
+pub(super) fn means(grid: &Grid, periodic: bool, packing: &Packing) -> Vec<f32> {
+    let [means] = tables(grid, packing, false, |samples, kernels| {
+        [samples.means(kernels, periodic)]
+    });
+    means
+}
+
+/// The tables of slopes and distortions, which share most of their work.
+pub(super) fn spreads(grid: &Grid, periodic: bool, packing: &Packing) -> [Vec<f32>; 3] {
+    tables(grid, packing, true, |samples, kernels| {
+        let [_, x, y, distortion] = samples.moments(kernels, kernels, periodic);
+        [x, y, distortion]
+    })
+}
+
+/// The tables of what is found at the texels of each level of each component.
+fn tables<const N: usize>(
+    grid: &Grid,
+    packing: &Packing,
+    squared: bool,
+    found: impl Fn(&Samples, &[Kernel; 2]) -> [Vec<f64>; N],
+) -> [Vec<f32>; N] {
+    let mut components = [const { Vec::new() }; N];
+    for samples in grid.iter() {
+        let mut pyramid = Samples::new(samples, squared);
+        let mut all = [const { Vec::new() }; N];
+        for level in 0..LEVELS {
+            pyramid.coarsen(level);
+            let kernels = pyramid.kernels(level);
+            for (all, texels) in all.iter_mut().zip(found(&pyramid, &kernels)) {
+                all.extend(texels);
             }
-            all
-        })
-        .collect();
-    packing.pack(&components)
+        }
+        for (component, all) in components.iter_mut().zip(all) {
+            component.push(all);
+        }
+    }
+    components.map(|components| packing.pack(&components))
 }
 
 /// The samples of one component, averaged so far that σ is still many of them, with a border of the
 /// values that the function keeps beyond the domain: those of its edge, not of the last averages.
+/// Columns come first: along rows, of which there are most, [`Kernel::down`] sums columns.
 struct Samples {
     side: usize,
     values: Vec<f64>,
@@ -60,24 +86,8 @@ impl Kernel {
         [plain, scored].map(|rows| Self { rows })
     }
 
-    /// The products with every row of samples with a border; the rows stay.
-    fn across(&self, values: &[f64], side: usize, periodic: bool) -> Vec<f64> {
-        let reach = self.rows.iter().map(|(_, w)| w.len()).max().unwrap_or(0) as i64 + 1;
-        let places = -reach..side as i64 + reach;
-        let places: Vec<usize> = places.map(|i| bordered(i, side, periodic)).collect();
-        let mut out = Vec::with_capacity(values.len() / (side + 2) * self.rows.len());
-        for row in values.chunks(side + 2) {
-            let padded: Vec<f64> = places.iter().map(|&place| row[place]).collect();
-            for (first, weights) in &self.rows {
-                let start = (first + reach) as usize;
-                let near = &padded[start..start + weights.len()];
-                out.push(near.iter().zip(weights).map(|(x, w)| x * w).sum());
-            }
-        }
-        out
-    }
-
-    /// The products with every column of rows with a border.
+    /// The products with every column of rows with a border. Whole rows are added at a time, so that
+    /// no sum waits for the one before it.
     fn down(&self, values: &[f64], columns: usize, periodic: bool) -> Vec<f64> {
         let side = values.len() / columns - 2;
         let mut out = vec![0.0; self.rows.len() * columns];
@@ -91,6 +101,16 @@ impl Kernel {
         }
         out
     }
+}
+
+/// Rows of `columns` numbers as columns.
+fn transposed(values: &[f64], columns: usize) -> Vec<f64> {
+    let rows = values.len() / columns;
+    let mut out = Vec::with_capacity(values.len());
+    for column in 0..columns {
+        out.extend((0..rows).map(|row| values[row * columns + column]));
+    }
+    out
 }
 
 /// Where sample i is among samples with a border.
@@ -107,13 +127,13 @@ fn bordered(i: i64, side: usize, periodic: bool) -> usize {
 impl Samples {
     fn new(samples: &[f32], squared: bool) -> Self {
         assert_eq!(samples.len(), SIDE * SIDE, "samples of a map");
-        let edge = |i: usize| i.saturating_sub(1).min(SIDE - 1);
-        let values: Vec<f64> = (0..(SIDE + 2) * (SIDE + 2))
-            .map(|i| {
-                let (row, column) = (edge(i / (SIDE + 2)), edge(i % (SIDE + 2)));
-                f64::from(samples[row * SIDE + column])
-            })
-            .collect();
+        let mut values = Vec::with_capacity((SIDE + 2) * (SIDE + 2));
+        for column in (0..SIDE + 2).map(|i| i.saturating_sub(1).min(SIDE - 1)) {
+            let mut border = |row: usize| values.push(f64::from(samples[row * SIDE + column]));
+            border(0);
+            (0..SIDE).for_each(&mut border);
+            border(SIDE - 1);
+        }
         let squares = if squared {
             values.iter().map(|x| x * x).collect()
         } else {
@@ -138,11 +158,11 @@ impl Samples {
             };
             let halved = |values: &[f64]| -> Vec<f64> {
                 let mut out = Vec::with_capacity((side + 2) * (side + 2));
-                for row in 0..side + 2 {
-                    let rows = pair(row).map(|row| &values[row * from..(row + 1) * from]);
-                    out.extend((0..side + 2).map(|column| {
-                        let [p, q] = pair(column);
-                        0.25 * (rows[0][p] + rows[0][q] + rows[1][p] + rows[1][q])
+                for column in 0..side + 2 {
+                    let columns = pair(column).map(|i| &values[i * from..(i + 1) * from]);
+                    out.extend((0..side + 2).map(|row| {
+                        let [p, q] = pair(row);
+                        0.25 * (columns[0][p] + columns[1][p] + columns[0][q] + columns[1][q])
                     }));
                 }
                 out
@@ -155,46 +175,47 @@ impl Samples {
         }
     }
 
-    fn level(&self, level: usize, moment: Moment, periodic: bool) -> Vec<f64> {
+    /// The kernels of the texels of a level, the same along both axes.
+    fn kernels(&self, level: usize) -> [Kernel; 2] {
         let count = intervals(level);
         let step = self.side as f64 / count as f64;
         let places = (0..=count).map(|i| i as f64 * step);
-        let kernels = Kernel::gaussian(places, deviation(sigma(level), SIDE, self.side));
-        self.convolved(&kernels, &kernels, moment, periodic)
+        Kernel::gaussian(places, deviation(sigma(level), SIDE, self.side))
     }
 
-    /// The moment at the texels of a pair of kernels for each axis.
-    fn convolved(
+    /// The products of a kernel with each row of samples.
+    fn across(&self, kernel: &Kernel, samples: &[f64], periodic: bool) -> Vec<f64> {
+        let rows = self.side + 2;
+        transposed(&kernel.down(samples, rows, periodic), rows)
+    }
+
+    /// The means at the texels of a level.
+    fn means(&self, [plain, _]: &[Kernel; 2], periodic: bool) -> Vec<f64> {
+        let narrow = self.across(plain, &self.values, periodic);
+        plain.down(&narrow, plain.rows.len(), periodic)
+    }
+
+    /// All moments at the places of a pair of kernels for each axis, in the order of
+    /// [`super::MOMENTS`].
+    fn moments(
         &self,
         [x0, x1]: &[Kernel; 2],
         [y0, y1]: &[Kernel; 2],
-        moment: Moment,
         periodic: bool,
-    ) -> Vec<f64> {
+    ) -> [Vec<f64>; 4] {
         let columns = x0.rows.len();
-        let both = |x: &Kernel, y: &Kernel, values: &[f64]| {
-            let narrow = x.across(values, self.side, periodic);
-            y.down(&narrow, columns, periodic)
-        };
-        match moment {
-            Moment::Mean => both(x0, y0, &self.values),
-            Moment::SlopeX => both(x1, y0, &self.values),
-            Moment::SlopeY => both(x0, y1, &self.values),
-            Moment::Distortion => {
-                let narrow = x0.across(&self.values, self.side, periodic);
-                let means = y0.down(&narrow, columns, periodic);
-                let slopes_y = y1.down(&narrow, columns, periodic);
-                let slopes_x = both(x1, y0, &self.values);
-                let squares = both(x0, y0, &self.squares);
-                // In f64 the difference of second moments is exact to 1e-16 of the square.
-                (squares
-                    .iter()
-                    .zip(&means)
-                    .zip(slopes_x.iter().zip(&slopes_y)))
-                .map(|((q, m), (x, y))| (q - m * m - x * x - y * y).max(0.0).sqrt())
-                .collect()
-            }
-        }
+        let across = |x: &Kernel, samples: &[f64]| self.across(x, samples, periodic);
+        let narrow = across(x0, &self.values);
+        let means = y0.down(&narrow, columns, periodic);
+        let slopes_y = y1.down(&narrow, columns, periodic);
+        let slopes_x = y0.down(&across(x1, &self.values), columns, periodic);
+        let squares = y0.down(&across(x0, &self.squares), columns, periodic);
+        // In f64 the difference of second moments is exact to 1e-16 of the square.
+        let distortions = (squares.iter().zip(&means))
+            .zip(slopes_x.iter().zip(&slopes_y))
+            .map(|((q, m), (x, y))| (q - m * m - x * x - y * y).max(0.0).sqrt())
+            .collect();
+        [means, slopes_x, slopes_y, distortions]
     }
 }
 
@@ -203,25 +224,22 @@ impl Samples {
 const PLACES: usize = 24;
 const BETWEEN: [f64; 3] = [0.0, 0.35, 0.7];
 
-/// The largest error of reading the table between its texels and its levels, in units of the map;
-/// of slopes and distortions, in those of σ ∂T and of √D.
-pub(super) fn error(
+/// The largest error of reading each moment's table between its texels and its levels, in units of
+/// the map; of slopes and distortions, in those of σ ∂T and of √D.
+pub(super) fn errors(
     grid: &Grid,
-    table: &[f32],
-    moment: Moment,
+    means: &[f32],
+    spreads: &[Vec<f32>; 3],
     periodic: bool,
     packing: &Packing,
-) -> f64 {
-    let header = &table[..packing.header()];
-    let mut worst = 0.0f64;
+) -> [f64; 4] {
+    let mut worst = [0.0f64; 4];
     for (component, samples) in grid.iter().enumerate() {
-        let mut samples = Samples::new(samples, moment == Moment::Distortion);
+        let mut samples = Samples::new(samples, true);
         let mut first = packing.header();
         for level in 0..LEVELS - 1 {
             samples.coarsen(level);
             let next = first + super::texels(level);
-            let header = &header[2 * component..];
-            let (low, step) = (f64::from(header[0]), f64::from(header[1]));
             let (fine, coarse) = (sigma(level), sigma(level + 1));
             for share in BETWEEN {
                 let steps = [(0.113, 0.754_877_666), (0.271, 0.569_840_291)];
@@ -234,14 +252,20 @@ pub(super) fn error(
                     let places = places.iter().map(|p| p * samples.side as f64);
                     Kernel::gaussian(places, sd)
                 });
-                let exact = samples.convolved(&kernels[0], &kernels[1], moment, periodic);
-                for (row, &v) in v.iter().enumerate() {
-                    for (column, &u) in u.iter().enumerate() {
-                        let [a, b] = [(level, first), (level + 1, next)].map(|(level, first)| {
-                            texel(table, packing, component, (intervals(level), first), [u, v])
+                let exact = samples.moments(&kernels[0], &kernels[1], periodic);
+                let tables = std::iter::once(means).chain(spreads.iter().map(Vec::as_slice));
+                for ((table, exact), worst) in tables.zip(&exact).zip(&mut worst) {
+                    let [low, step] = [0, 1].map(|i| f64::from(table[2 * component + i]));
+                    let ends = [(level, first), (level + 1, next)];
+                    for (exact, place) in exact
+                        .iter()
+                        .zip(v.iter().flat_map(|&v| u.iter().map(move |&u| [u, v])))
+                    {
+                        let [a, b] = ends.map(|(level, first)| {
+                            texel(table, packing, component, (intervals(level), first), place)
                         });
                         let value = low + step * (a + share * (b - a));
-                        worst = worst.max((value - exact[row * PLACES + column]).abs());
+                        *worst = worst.max((value - exact).abs());
                     }
                 }
             }
