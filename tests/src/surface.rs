@@ -10,6 +10,7 @@
 mod facet;
 mod field;
 mod fourier;
+mod host;
 mod model;
 mod pixel;
 mod ray;
@@ -17,6 +18,7 @@ mod torus;
 
 pub use facet::{Direction, direction, dot, ggx, lambert};
 pub use field::{Field, Kind};
+pub use host::Host;
 pub use model::{Model, Moments};
 pub use pixel::{Averages, Lit};
 pub use ray::visible;

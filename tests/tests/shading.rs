@@ -9,13 +9,11 @@ use mipless::{CheckOptions, Options, Texture};
 use mipless_codegen::shade::{FIELDS, Hiding, Lighting, terms_module};
 use mipless_tests::random::Random;
 use mipless_tests::surface::{
-    Averages, Direction, Field, Kind, Lit, Model, Moments, Torus, direction, dot, ggx, lambert,
+    Averages, Direction, Field, Host, Kind, Lit, Model, Moments, Torus, direction, dot, ggx,
+    lambert,
 };
-
-/// 43 texels a wavelength.
-fn torus() -> Torus {
-    Torus::new(256, 6.0)
-}
+use rayon::prelude::*;
+use std::sync::LazyLock;
 
 /// Every so many texels there is a pixel.
 const STRIDE: usize = 8;
@@ -49,36 +47,93 @@ fn pairs() -> Vec<(Direction, Direction)> {
         .collect()
 }
 
+/// What a field of slopes of .4 mirrors of each of the [`pairs`], for each of the [`ALPHAS`].
+struct Mirrored {
+    kind: Kind,
+    field: Field,
+    truths: Vec<[f64; ALPHAS.len()]>,
+}
+
+const ALPHAS: [f64; 4] = [0.05, 0.1, 0.2, 0.5];
+
+static MIRRORED: LazyLock<Vec<Mirrored>> = LazyLock::new(|| {
+    let torus = Torus::new(512, 14.0);
+    let of = |kind| {
+        let whole = Field::new(&torus, kind, 0.4, 2);
+        let field = whole.thinned(2);
+        let truths = pairs().into_par_iter().map(|(view, light)| {
+            let lit = Lit::of(&field, &whole, view, light);
+            ALPHAS.map(|alpha| lit.whole(&field.each(|_, s| ggx(s, alpha, view, light))))
+        });
+        let truths = truths.collect();
+        Mirrored {
+            kind,
+            field,
+            truths,
+        }
+    };
+    vec![of(Kind::Band), of(Kind::Fractal), of(Kind::Directed)]
+});
+
+/// The L2 error over the pairs, and by how much the largest is off.
+fn errors(truths: impl Iterator<Item = f64>, found: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (mut error, mut all, mut peaks) = (0.0, 0.0, [0.0_f64; 2]);
+    for (truth, found) in truths.zip(found) {
+        error += (found - truth).powi(2);
+        all += truth * truth;
+        peaks = [peaks[0].max(found), peaks[1].max(truth)];
+    }
+    [(error / all).sqrt(), peaks[0] / peaks[1] - 1.0]
+}
+
 #[test]
 fn two_lobes_are_near_what_gaussian_slopes_mirror() {
-    let torus = Torus::new(512, 14.0);
     let model = Model::new(&terms_module(Hiding::Facets));
-    let alphas = [0.05_f64, 0.1, 0.2, 0.3, 0.4, 0.5];
-    for kind in [Kind::Band, Kind::Fractal, Kind::Directed] {
-        let field = Field::new(&torus, kind, 0.4, 2);
-        let moments = Moments::of_slopes(&field, &Averages::whole(&field), 0.0, false);
-        let mut sums = [[0.0; 2]; 6];
-        for (view, light) in pairs() {
-            let lit = Lit::new(&field, view, light);
-            for (sum, alpha) in sums.iter_mut().zip(alphas) {
-                let truth = lit.whole(&field.each(|_, s| ggx(s, alpha, view, light)));
-                let mut moments = moments.clone();
-                moments.fill("mean_roughness", alpha.sqrt());
-                let found = model.between(&moments, view, light)[3][0];
-                sum[0] += (found - truth).powi(2);
-                sum[1] += truth.powi(2);
+    for Mirrored {
+        kind,
+        field,
+        truths,
+    } in &*MIRRORED
+    {
+        let mut moments = Moments::of_slopes(field, &Averages::whole(field), 0.0, false);
+        for ((k, alpha), bound) in ALPHAS.iter().enumerate().zip([0.10, 0.10, 0.10, 0.16]) {
+            moments.fill("mean_roughness", alpha.sqrt());
+            let found = pairs().into_iter();
+            let found = found.map(|(view, light)| model.between(&moments, view, light)[3][0]);
+            let [error, peak] = errors(truths.iter().map(|truths| truths[k]), found);
+            println!("{kind:?}, alpha {alpha}: L2 {error:.3}, peak {peak:+.2}");
+            assert!(error <= bound, "{kind:?} {alpha}: {error}");
+        }
+    }
+}
+
+#[test]
+fn hosts_of_one_lobe_are_near_enough_with_the_widths_of_a_surface() {
+    for Mirrored {
+        kind,
+        field,
+        truths,
+    } in &*MIRRORED
+    {
+        let over = |f: &dyn Fn([f64; 2]) -> f64| mean(&field.each(|_, s| f(s)));
+        let covariance = [
+            over(&|s| s[0] * s[0]),
+            over(&|s| s[0] * s[1]),
+            over(&|s| s[1] * s[1]),
+        ];
+        // Every texel of a normal map counts the same.
+        let length = over(&|s| 1.0 / (1.0 + s[0] * s[0] + s[1] * s[1]).sqrt());
+        for (k, &alpha) in ALPHAS.iter().enumerate().skip(1) {
+            for host in Host::ALL {
+                let found = pairs().into_iter();
+                let found = found
+                    .map(|(view, light)| host.mirrored(covariance, length, alpha, [view, light]));
+                let [error, peak] = errors(truths.iter().map(|truths| truths[k]), found);
+                println!("{kind:?}, alpha {alpha}, {host:?}: L2 {error:.3}, peak {peak:+.2}");
+                let near = host != Host::Surface || (error <= 0.25 && peak.abs() <= 0.2);
+                assert!(near, "{kind:?} {alpha}: {error} {peak}");
             }
         }
-        let errors = sums.map(|[error, all]| (error / all).sqrt());
-        println!("{kind:?}: {errors:.3?} at {alphas:?}");
-        assert!(
-            errors[..3].iter().all(|&error| error <= 0.10),
-            "{kind:?}: {errors:?}"
-        );
-        assert!(
-            errors.iter().all(|&error| error <= 0.16),
-            "{kind:?}: {errors:?}"
-        );
     }
 }
 
@@ -101,8 +156,8 @@ fn directions([view, light, between]: [f64; 3]) -> (Direction, Direction) {
 fn cracks_and_plateaus_are_flat_and_ramp() {
     let torus = Torus::new(256, 8.0);
     let model = Model::new(&terms_module(Hiding::Facets));
-    let sds = [0.05, 0.1, 0.2, 0.35, 1.0];
-    for kind in [Kind::Cracks, Kind::Plateaus, Kind::Band] {
+    let sds = [0.05, 0.35, 1.0];
+    for kind in [Kind::Cracks, Kind::Plateaus] {
         let field = Field::new(&torus, kind, 0.4, 4);
         let averages = Averages::of(&field, STRIDE);
         let moments: Vec<[Moments; 2]> = (sds.iter())
@@ -139,7 +194,7 @@ fn cracks_and_plateaus_are_flat_and_ramp() {
             for (row, bound) in rows.iter().zip([0.30, 0.15, 0.12, 0.03]) {
                 let [one, mixed] = row;
                 assert!(mixed[1] <= 1.001 * one[1], "{kind:?} {sd}: {row:?}");
-                let holds = *sd < 0.35 || kind == Kind::Band || mixed[0] <= bound;
+                let holds = *sd < 0.35 || mixed[0] <= bound;
                 assert!(holds, "{kind:?} {sd}: {row:?} over {bound}");
             }
         }

@@ -15,13 +15,18 @@ pub struct Lit<'a> {
 impl<'a> Lit<'a> {
     /// By rays.
     pub fn new(field: &'a Field, view: Direction, light: Direction) -> Self {
-        let [x, y, z] = view;
-        let area = field.each(|_, [u, v]| (z - x * u - y * v).max(0.0));
-        let clear = visible(field, view);
+        Self::of(field, field, view, light)
+    }
+
+    /// Of some facets of a field, by rays over all of it: see [`Field::thinned`].
+    pub fn of(facets: &'a Field, field: &Field, view: Direction, light: Direction) -> Self {
+        let stride = field.torus.texels / facets.torus.texels;
+        let open = Self::open(facets, view);
+        let clear = visible(field, view, stride);
         Self {
-            field,
-            seen: area.iter().zip(&clear).map(|(a, v)| a * v).collect(),
-            lit: visible(field, light),
+            seen: open.seen.iter().zip(&clear).map(|(a, v)| a * v).collect(),
+            lit: visible(field, light, stride),
+            ..open
         }
     }
 

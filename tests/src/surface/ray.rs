@@ -6,12 +6,14 @@ use rayon::prelude::*;
 /// How far a ray moves at a time, in texels.
 const STEP: f64 = 0.75;
 
-/// For each texel 1 where a ray towards `w` clears the field, which is linear between texels, else 0.
-pub fn visible(field: &Field, [x, y, z]: Direction) -> Vec<f64> {
+/// For every `stride`-th texel of every `stride`-th row 1 where a ray towards `w` clears the field, which is
+/// linear between texels, else 0.
+pub fn visible(field: &Field, [x, y, z]: Direction, stride: usize) -> Vec<f64> {
     let n = field.torus.texels;
+    let side = n / stride;
     let across = x.hypot(y);
     if across < 1e-3 {
-        return vec![1.0; n * n];
+        return vec![1.0; side * side];
     }
     let step = field.torus.step();
     let heights: Vec<f32> = field.height.iter().map(|&h| h as f32).collect();
@@ -24,8 +26,9 @@ pub fn visible(field: &Field, [x, y, z]: Direction) -> Vec<f64> {
         heights[j as usize * n + i as usize]
     };
     let clears = |index: usize| {
-        let (i, j) = ((index % n) as f32, (index / n) as f32);
-        let from = heights[index] + start;
+        let (column, row) = (index % side * stride, index / side * stride);
+        let (i, j) = (column as f32, row as f32);
+        let from = heights[row * n + column] + start;
         for turn in 1.. {
             let t = turn as f32;
             let height = from + t * rise;
@@ -44,5 +47,5 @@ pub fn visible(field: &Field, [x, y, z]: Direction) -> Vec<f64> {
         }
         1.0
     };
-    (0..n * n).into_par_iter().map(clears).collect()
+    (0..side * side).into_par_iter().map(clears).collect()
 }
