@@ -132,7 +132,14 @@ impl Arguments {
     /// A scene of a graph that is already loaded.
     pub(crate) fn scene(&self, texture: Texture, default: Size) -> Result<Scene, Mistake> {
         let parameters = settings(&texture, &self.settings)?;
-        let output = output(&texture, self.shown(&texture))?;
+        let mut output = output(&texture, self.shown(&texture))?;
+        let mut texture = texture;
+        if !texture.checked().graph().materials.is_empty() {
+            // Of a material most parts are read one by one, and each costs what it reads.
+            let name = texture.outputs()[output].name.clone();
+            texture = texture.with_outputs(&[&name]);
+            output = 0;
+        }
         let view = match self.view {
             ViewName::Plane => View::default(),
             ViewName::Flat => {
