@@ -180,10 +180,17 @@ impl Arguments {
             }
             None => texture,
         };
-        let output = if is_lit {
-            0
+        let (texture, output) = if is_lit {
+            (texture, 0)
         } else {
-            output(&texture, self.shown(&texture))?
+            let output = output(&texture, self.shown(&texture))?;
+            if texture.checked().graph().materials.is_empty() {
+                (texture, output)
+            } else {
+                // Of a material most parts are read one by one, and each costs what it reads.
+                let name = texture.outputs()[output].name.clone();
+                (texture.with_outputs(&[&name]), 0)
+            }
         };
         let view = match self.view {
             ViewName::Plane => View::default(),

@@ -18,5 +18,5 @@ pub mod wgsl;
 pub use lower::{
     Audit, AuditedBand, AuditedOutput, Bundle, Ensemble, Image, Lower, Method, NodeDef, NodeRule,
     Options, Over, ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Slopes, Upstream,
-    Widened, audit, compile, pairs,
+    Widened, audit, compile, jumps, pairs,
 };

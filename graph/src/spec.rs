@@ -265,6 +265,9 @@ pub struct MaterialPart {
     /// Whether the mean of its values at points is what is right over a footprint: not of a roughness,
     /// which is wider by the slopes that differ there.
     pub is_mean: bool,
+    /// Whether it tells what slopes have in common with other signals, or on what share of the footprint
+    /// they are: that is kept where it is asked for.
+    pub is_joint: bool,
 }
 
 impl MaterialPart {

@@ -76,7 +76,7 @@ pub(super) fn parts(
         let message = format!("`{}` is a material inside a sub-graph", material.name);
         let help = "a material ends the graph itself: give its inputs as outputs of the sub-graph";
         context.report(at("material-inside", message).help(help));
-        return Some(Vec::new());
+        return None;
     }
     let output = if port.output == 0 {
         material.out
@@ -121,7 +121,7 @@ pub(super) fn parts(
                 material.name, part.name
             );
             context.report(at("duplicate-output", message).help(help));
-            return Some(Vec::new());
+            return None;
         }
         parts.push((part.name, port));
     }

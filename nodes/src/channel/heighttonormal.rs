@@ -45,7 +45,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::surface("The coordinates that the normal's axes follow."),
     ],
     output: OutputType::Exactly(Type::Vector3),
-    reach: |_| Reach::of(-1.0, 1.0),
+    reach: |_| Reach::of(0.0, 1.0),
     class,
     example: example! { "heighttonormal", r#"
     "hills": { "type": "fractal2d", "inputs": { "frequency": 5 } },

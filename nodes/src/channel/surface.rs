@@ -1,6 +1,6 @@
 //! A material that stays right at every distance: what a host reads of it.
 
-use super::gradient::{class_of, gradient};
+use super::gradient::{class_of, gradient, of_normal};
 use super::microsurface::Microsurface;
 use crate::port::{self, choice, number};
 use mipless_codegen::ir::{Float, Vec2};
@@ -33,6 +33,7 @@ const fn mean(
         models,
         reads,
         is_mean: true,
+        is_joint: false,
     }
 }
 
@@ -46,6 +47,14 @@ const fn shape(
     MaterialPart {
         is_mean: false,
         ..mean(name, ty, models, reads)
+    }
+}
+
+/// What slopes have in common with other signals, and how they are spread.
+const fn joint(name: &'static str, ty: Type, reads: &'static [&'static str]) -> MaterialPart {
+    MaterialPart {
+        is_joint: true,
+        ..shape(name, ty, NONE, reads)
     }
 }
 
@@ -100,11 +109,12 @@ const PARTS: &[MaterialPart] = &[
     mean("mean_occlusion", Type::Float, NONE, &["occlusion"]),
     mean("mean_opacity", Type::Float, NONE, &["opacity"]),
     mean("mean_emission", Type::Color3, NONE, &["emission"]),
+    shape("normal_map", Type::Color3, NONE, SHAPE),
     shape("slope_mean", Type::Vector2, NONE, SHAPE),
     shape("slope_covariance", Type::Vector3, NONE, SHAPE),
-    shape("slope_share", Type::Float, NONE, SHAPE),
-    shape("cov_color_slope_u", Type::Vector3, NONE, COLOR_SHAPE),
-    shape("cov_color_slope_v", Type::Vector3, NONE, COLOR_SHAPE),
+    joint("slope_share", Type::Float, SHAPE),
+    joint("cov_color_slope_u", Type::Vector3, COLOR_SHAPE),
+    joint("cov_color_slope_v", Type::Vector3, COLOR_SHAPE),
     shape(
         "cov_color_height",
         Type::Vector3,
@@ -152,7 +162,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             multiplied by 1/(1 + 0.173 σ^1.444), what the filtered valleys hide. Roughness is held in \
             [0.01, 1], the others of 0 to 1 in that. No node reads a surface, a graph has one that stands \
             for all parts, and what no output needs is not computed. For those who shade by moments, and \
-            in `all` of no model: means of the inputs, `slope_mean`, `slope_covariance` (uu, uv, vv), \
+            in `all` of no model: means of the inputs, `normal_map` (½ + ½ n, the colour of a map), `slope_mean`, `slope_covariance` (uu, uv, vv), \
             `slope_share`, the covariances of the colour with the slopes (`cov_color_slope_u`, `_v`) and, \
             beyond what the footprint's gradients explain, with the height, and its deviation \
             `sigma_height`.",
@@ -193,7 +203,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             PortType::Exactly(Type::Vector3),
             Default::Color3([0.0, 0.0, 1.0]),
             "A normal in tangent space, as `normalmap` gives it, whose slopes add to the height's.",
-        ),
+        )
+        .unit("normal"),
         number(
             "occlusion",
             1.0,
@@ -253,9 +264,6 @@ fn class(inputs: &dyn InputView) -> Behaviour {
     }
 }
 
-/// The limits of a slope that a normal means.
-const STEEPEST: f32 = 50.0;
-
 /// The slopes of the surface: those of the height, and those that the normal means.
 fn slopes<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> [Signal<'b>; 2] {
     let scale = lower.number(node, "scale");
@@ -265,13 +273,7 @@ fn slopes<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> [Signal<'b>; 2] {
     if upright(0) && upright(1) {
         return height;
     }
-    let ranges = [[-STEEPEST, STEEPEST]; 2];
-    let detail = lower.algebra.cubature(&normal, &ranges, |n| {
-        let up = n[2].max(1e-6);
-        [n[0], n[1]]
-            .map(|across| (-across / up).clamp(-STEEPEST, STEEPEST))
-            .to_vec()
-    });
+    let detail = of_normal(lower, &normal);
     [0, 1].map(|i| &height[i] + &detail[i])
 }
 
@@ -316,9 +318,13 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
             number(microsurface(lower, node).diffuse_roughness())
         }
         "normal" | "geometry_normal" => numbers(&microsurface(lower, node).normal()),
+        "normal_map" => numbers(&microsurface(lower, node).normal().map(|x| x * 0.5 + 0.5)),
         "slope_mean" => numbers(&*microsurface(lower, node).mean()),
         "slope_covariance" => numbers(&*microsurface(lower, node).covariance()),
-        "slope_share" => number(lower.b().float(1.0)),
+        "slope_share" => {
+            let [u, v] = slopes(lower, node);
+            number(Signal::share_of([&u, &v]))
+        }
         "cov_color_slope_u" => with_slope(lower, node, 0),
         "cov_color_slope_v" => with_slope(lower, node, 1),
         "cov_color_height" => {
