@@ -3,7 +3,7 @@
 use super::{STRIDE, bias_of, directions};
 use mipless_codegen::shade::{Hiding, Lighting, terms_module};
 use mipless_tests::surface::{
-    Averages, Direction, Field, Kind, Lit, Model, Moments, Torus, direction, lambert,
+    Averages, Direction, Field, Kind, Lit, Model, Moments, Torus, lambert,
 };
 
 /// A colour of the slope: bright where it faces one way.
