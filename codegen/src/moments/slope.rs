@@ -52,7 +52,7 @@ impl<'b> Algebra<'b> {
             }
             if pair.iter().all(|slope| slope.is_certain()) {
                 let factor = Signal {
-                    share: Some(factor.evenness()),
+                    share: Some(factor.evenness() * 3.0),
                     ..plain(&factor.flat())
                 };
                 for (sum, slope) in out.iter_mut().zip(pair) {
@@ -141,7 +141,9 @@ impl<'b> Algebra<'b> {
                     range: x.range,
                 };
                 out.share = Some(of_function(x.flat_mean(), sd, |at, share| {
-                    derivative.moments(&part(at, share)).mean
+                    let part = part(at, share);
+                    let m = derivative.moments(&part);
+                    m.mean.square() + m.slope.square() * part.variance + m.distortion
                 }));
             }
             return out;
