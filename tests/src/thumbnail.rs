@@ -81,7 +81,7 @@ const OTHERS: &[(&str, Look)] = &[
     ("convert", POSITION),
     ("cos", values(-1.0, 1.0)),
     ("crossproduct", growing([0.0, 1.0], [0.0, 70.0])),
-    ("curvature", values(-1.5, 1.5)),
+    ("curvature", values(-0.3, 0.3)),
     ("distance", growing([0.0, 0.8], [0.0, 11.0])),
     ("divide", values(0.0, 0.25)),
     ("dotproduct", growing([0.0, 1.7], [0.0, 120.0])),
