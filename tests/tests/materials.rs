@@ -31,7 +31,10 @@ fn parts_of_materials_are_numbers_that_a_host_can_use() {
                 method,
                 ..Options::default()
             });
-            let values = eval_program::<f32>(&program, &footprints, &[]);
+            let parameters: Vec<f32> = (program.interface.parameters.iter())
+                .flat_map(|parameter| parameter.default.iter().copied())
+                .collect();
+            let values = eval_program::<f32>(&program, &footprints, &parameters);
             let mut next = 0;
             for output in case.texture.outputs() {
                 for component in 0..output.ty.components() {

@@ -52,7 +52,7 @@ impl<'b> Algebra<'b> {
             }
             if pair.iter().all(|slope| slope.is_certain()) {
                 let factor = Signal {
-                    share: Some(factor.evenness()),
+                    share: (self.shares_slopes).then(|| factor.evenness() * 3.0),
                     ..plain(&factor.flat())
                 };
                 for (sum, slope) in out.iter_mut().zip(pair) {
@@ -105,6 +105,9 @@ impl<'b> Algebra<'b> {
 
     /// On what shares of the footprint both components of a sum of terms are slopes.
     fn shares(&self, rest: &[Signal<'b>; 2], uncertain: &[Term<'_, 'b>]) -> [Option<Float<'b>>; 2] {
+        if !self.shares_slopes {
+            return [None, None];
+        }
         [0, 1].map(|i| {
             let one = self.b.float(1.0);
             let rest = [rest[i].second_moment(), rest[i].share.unwrap_or(one)];
@@ -141,7 +144,9 @@ impl<'b> Algebra<'b> {
                     range: x.range,
                 };
                 out.share = Some(of_function(x.flat_mean(), sd, |at, share| {
-                    derivative.moments(&part(at, share)).mean
+                    let part = part(at, share);
+                    let m = derivative.moments(&part);
+                    m.mean.square() + m.slope.square() * part.variance + m.distortion
                 }));
             }
             return out;

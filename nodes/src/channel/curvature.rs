@@ -27,7 +27,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             Gaussian: its mean is as exact as the filter of the height, and of its variation within the \
             pixel the parts of both that the place moves are subtracted; the rest of the blurred \
             signal (see `blur`) counts as independent.",
-        accuracy: "As `blur`. Held by `nodes/tests/surface.rs` against dense sums.",
+        accuracy: "As `blur`, divided by r²: so is the rounding of the height, about 1e-6 of it. Held by `nodes/tests/surface.rs` against dense sums.",
         references: "Marr & Hildreth 1980, *Theory of Edge Detection* (differences of Gaussians). Heckbert \
             1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8.",
     },
@@ -49,7 +49,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     class,
     example: example! { "curvature", r#"
     "hills": { "type": "fractal2d", "inputs": { "frequency": 4 } },
-    "curvature": { "type": "curvature", "inputs": { "in": { "node": "hills" }, "size": 0.1, "scale": 0.005 } }
+    "curvature": { "type": "curvature", "inputs": { "in": { "node": "hills" }, "size": 0.1, "scale": 0.001 } }
 "# },
 };
 

@@ -17,6 +17,9 @@ const NARROWEST: f32 = 1e-4;
 /// nearest to the lobe convolved with Gaussian slopes: a GGX of width α is not a Gaussian of variance α²/2.
 const WIDENING: f32 = 2.0;
 
+/// Widths whose squares differ by less than this share are alike.
+const ROUND: f32 = 4e-3;
+
 /// The most anisotropic that a standard surface is.
 const LONGEST: f32 = 0.98;
 
@@ -88,8 +91,8 @@ impl<'b> Microsurface<'b> {
         let [uu, uv, vv] = *self.tangent();
         let (middle, tilt) = (0.5 * (uu + vv), 0.5 * (uu - vv));
         let root = (tilt * tilt + uv * uv).sqrt();
-        // Of a lobe that is round but for rounding, the direction is none.
-        let long = root.gt((own + middle) * 1e-6);
+        // Of a lobe that is next to round, the direction is none: it would be that of rounding.
+        let long = root.gt((own + middle) * ROUND);
         let divisor = long.select(root, 1.0);
         Lobe {
             long: own + WIDENING * (middle + root),

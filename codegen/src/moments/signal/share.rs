@@ -1,6 +1,7 @@
 //! On what share of a footprint a slope is one: cracks, plateaus and bevels are flat elsewhere.
 //!
-//! A signal that is Gaussian on a share p and 0 elsewhere has E[X⁴] = 3 E[X²]²/p. Of a product of
+//! A signal that is Gaussian on a share p and 0 elsewhere has E[X⁴] = 3 E[X²]²/p; one that hardly differs
+//! has a share of up to 3. Of a product of
 //! independent factors, E[X²]²/E[X⁴] is the product of theirs; of a sum, fourth cumulants add.
 
 use super::Signal;
@@ -57,18 +58,18 @@ impl<'b> Signal<'b> {
 const SCORES: i32 = 24;
 const STEP: f32 = 0.125;
 
-/// The share of a function of a Gaussian, by its means over parts of it that are this many times as narrow.
+/// The share of a function of a Gaussian, by the means of its square over parts of it that are narrower.
 pub(in crate::moments) fn of_function<'b>(
     mean: Float<'b>,
     sd: Float<'b>,
-    mean_over: impl Fn(Float<'b>, f32) -> Float<'b>,
+    square_over: impl Fn(Float<'b>, f32) -> Float<'b>,
 ) -> Float<'b> {
     let b = mean.builder();
     let squares: Vec<[Float<'b>; 2]> = (-SCORES..=SCORES)
         .map(|i| {
             let z = STEP * i as f32;
             let weight = STEP * (-0.5 * z * z).exp() / (2.0 * std::f32::consts::PI).sqrt();
-            let square = mean_over(mean + sd * z, 0.5 * STEP).square();
+            let square = square_over(mean + sd * z, 0.5 * STEP);
             [square * weight, square.square() * weight]
         })
         .collect();
