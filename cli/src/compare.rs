@@ -2,14 +2,17 @@
 
 use crate::mistake::Mistake;
 use crate::plan;
+use crate::progress;
 use crate::report::Report;
-use crate::scene::{self, writable};
+use crate::scene::{self, Scene, writable};
 use crate::sources::Sources;
 use clap::Args;
-use mipless::{Method, Options};
+use mipless::Method;
 use mipless_graph::CheckOptions;
 use mipless_runtime::compare::{Panel, compose};
+use mipless_runtime::image::Image;
 use mipless_runtime::image_file::{Bits, Format, encode, write_all};
+use mipless_runtime::lit::{Halves, Hiding, Lit};
 use mipless_runtime::metrics::display_difference;
 use mipless_runtime::plan::TRUTH;
 use mipless_runtime::view::Size;
@@ -25,10 +28,18 @@ pub(crate) struct Arguments {
     /// The picture, a .png
     #[arg(short, long, value_name = "FILE.png")]
     out: PathBuf,
+
+    /// How many points of a pixel the truth of a lit material shades
+    #[arg(long, value_name = "N", default_value_t = 256,
+        value_parser = clap::value_parser!(u32).range(2..=65536))]
+    samples: u32,
 }
 
 /// Pixels over which the truth's own error is measured.
 const PIXELS: usize = 400;
+
+/// One column: what it shows, what it is called, its error.
+type Column = (Image, String, f64);
 
 /// Evaluates, measures and writes.
 pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mistake> {
@@ -43,26 +54,11 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     read.add_graph(&arguments.scene.graph, &scene.texture);
     read.guard(&arguments.out)?;
 
-    // The other methods do not sample, so that they share no points with the truth.
-    let truth = scene.evaluate(&scene.options(TRUTH), report)?.mean;
-    let noise_floor = plan::measured(&scene, &[], PIXELS, report)?.noise_floor;
-    // The measured truth has twice as many points.
-    let noise_floor = noise_floor * std::f64::consts::SQRT_2;
-    let mask = scene.view.mask(scene.size);
-    let mut panels = Vec::new();
-    let mut results = Vec::new();
-    for method in [Method::Point, Method::Auto] {
-        let options: Options = scene.options(method);
-        let image = scene.evaluate(&options, report)?.mean;
-        let error = display_difference(&image, &truth, Some(&mask));
-        results.push(json!({ "method": method.to_string(), "error": error.rms }));
-        panels.push((scene.view.present(&image), method.to_string(), error.rms));
-    }
-    panels.push((
-        scene.view.present(&truth),
-        format!("truth ({TRUTH})"),
-        noise_floor,
-    ));
+    let (panels, results) = match scene.lit(Hiding::Nothing) {
+        Some(lit) => lit_columns(&mut scene, &lit, arguments.samples, report)?,
+        None => columns(&mut scene, report)?,
+    };
+    let (truth, noise_floor) = (panels[2].1.clone(), panels[2].2);
     let details: Vec<String> = panels.iter().map(|p| format!("error {:.4}", p.2)).collect();
     let panels: Vec<Panel<'_>> = (panels.iter().zip(&details))
         .map(|((image, title, _), detail)| Panel {
@@ -86,8 +82,74 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     ));
     report.result("files", vec![arguments.out.display().to_string()]);
     report.result("methods", results);
-    report.result("truth", TRUTH.to_string());
+    report.result("truth", truth);
     report.result("noise_floor", noise_floor);
     report.result("device", scene.device.to_string());
     Ok(())
+}
+
+/// `point`, `auto` and the truth of an output, with the errors of the first two.
+fn columns(
+    scene: &mut Scene,
+    report: &mut Report,
+) -> Result<(Vec<Column>, Vec<serde_json::Value>), Mistake> {
+    // The other methods do not sample, so that they share no points with the truth.
+    let truth = scene.evaluate(&scene.options(TRUTH), report)?.mean;
+    let noise_floor = plan::measured(scene, &[], PIXELS, report)?.noise_floor;
+    // The measured truth has twice as many points.
+    let noise_floor = noise_floor * std::f64::consts::SQRT_2;
+    let mut images = Vec::new();
+    for method in [Method::Point, Method::Auto] {
+        let image = scene.evaluate(&scene.options(method), report)?.mean;
+        images.push((image, method.to_string()));
+    }
+    let name = format!("truth ({TRUTH})");
+    Ok(measured(scene, images, (truth, name, noise_floor)))
+}
+
+/// The same of a lit material: points that a host shades, moments that `shade` does, and facets that are
+/// shaded one by one. Nothing hides anything in any of them.
+fn lit_columns(
+    scene: &mut Scene,
+    lit: &Lit,
+    samples: u32,
+    report: &mut Report,
+) -> Result<(Vec<Column>, Vec<serde_json::Value>), Mistake> {
+    let program = scene.texture.compile(&scene.options(Method::Point));
+    let point = (&program, &scene.parameters[..]);
+    let halves = progress::watch(report, "truth", |job| {
+        lit.truth(point, scene.size, scene.filter, samples, job)
+    });
+    let halves = halves.map_err(|error| Mistake::usage("render-failed", error))?;
+    let mask = scene.view.mask(scene.size);
+    let Halves([first, second]) = &halves;
+    let noise_floor = 0.5 * display_difference(first, second, Some(&mask)).rms;
+    let mut images = Vec::new();
+    for (method, name) in [
+        (Method::Point, "point, shaded by a host"),
+        (Method::Auto, "auto, shade"),
+    ] {
+        let image = scene.evaluate_lit(&scene.options(method), lit, report)?;
+        images.push((image, name.to_owned()));
+    }
+    let name = format!("truth ({samples} points, each shaded)");
+    Ok(measured(scene, images, (halves.whole(), name, noise_floor)))
+}
+
+/// The errors of images against the truth, and all as people see them.
+fn measured(
+    scene: &Scene,
+    images: Vec<(Image, String)>,
+    (truth, name, noise_floor): (Image, String, f64),
+) -> (Vec<Column>, Vec<serde_json::Value>) {
+    let mask = scene.view.mask(scene.size);
+    let mut columns = Vec::new();
+    let mut results = Vec::new();
+    for (image, name) in images {
+        let error = display_difference(&image, &truth, Some(&mask)).rms;
+        results.push(json!({ "method": name, "error": error }));
+        columns.push((scene.present(&image), name, error));
+    }
+    columns.push((scene.present(&truth), name, noise_floor));
+    (columns, results)
 }

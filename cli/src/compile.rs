@@ -8,8 +8,9 @@ use crate::value;
 use clap::{Args, ValueEnum};
 use mipless::target::{Manifest, Target, TranslateError, validate};
 use mipless::wgsl::{self, Entry};
-use mipless::{Diagnostic, Method, Options, PixelFilter};
+use mipless::{Diagnostic, Method, Options, PixelFilter, Texture};
 use mipless_runtime::image_file::write_all;
+use mipless_runtime::lit;
 use serde_json::{Map, Value};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -51,6 +52,11 @@ pub(crate) struct Arguments {
     /// Declare no `Footprint` and `Position`, so that several textures stand in one module (WGSL only)
     #[arg(long)]
     shared_footprint: bool,
+
+    /// Of a graph with a surface: functions beside the texture's that shade it by a light and by a sky;
+    /// its outputs are then what they take
+    #[arg(long)]
+    shade: bool,
 
     /// The filter over which a pixel is averaged; deviation in pixels
     #[arg(long, value_name = "gaussian:SD|box", default_value = "gaussian:0.5",
@@ -171,6 +177,11 @@ impl<'a> Job<'a> {
         } = self.arguments;
         let texture = load::load(path, &allows_sampling(*method), report)?;
         self.read.borrow_mut().add_graph(path, &texture);
+        let texture = if self.arguments.shade {
+            self.shaded(path, &texture)?
+        } else {
+            texture
+        };
         let options = Options {
             method: *method,
             filter: *pixel_filter,
@@ -183,7 +194,12 @@ impl<'a> Job<'a> {
             binding: self.arguments.binding,
             shared_footprint: self.arguments.shared_footprint,
         };
-        let shader = wgsl::emit(&program, &emission);
+        let emit = if self.arguments.shade {
+            wgsl::emit_shaded
+        } else {
+            wgsl::emit
+        };
+        let shader = emit(&program, &emission);
         // Folders take names of 255 bytes.
         let name = &shader.function[..shader.function.len().min(LONGEST_STEM)];
 
@@ -222,6 +238,9 @@ impl<'a> Job<'a> {
         let mut manifest = serde_json::from_str(&manifest.to_json()).unwrap_or(Value::Null);
         manifest["method"] = method.to_string().into();
         manifest["pixel_filter"] = value::pixel_filter_name(*pixel_filter).into();
+        if !shader.shading.is_empty() {
+            manifest["shading"] = shader.shading.clone().into();
+        }
         manifest["files"] = listed.into();
         files.push((
             out.join(format!("{name}.json")),
@@ -242,6 +261,20 @@ impl<'a> Job<'a> {
             "files": written,
             "manifest": manifest,
         }))
+    }
+
+    /// What the functions that shade take of the graph's material.
+    fn shaded(&self, path: &Path, texture: &Texture) -> Result<Texture, Mistake> {
+        let parts = [&lit::parts()[..], &["mean_opacity", "displacement"]].concat();
+        let Some(material) = texture.material(&parts, &allows_sampling(self.arguments.method))
+        else {
+            let message = format!(
+                "{}: `--shade` shades a material, and the graph has none",
+                path.display()
+            );
+            return Err(Mistake::usage("no-surface", message).help("end the graph in a `surface`"));
+        };
+        material.map_err(|wrong| Mistake::graph(path, wrong))
     }
 
     /// Refuses to write over a graph, or over what another graph of this run has written.

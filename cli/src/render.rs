@@ -4,7 +4,7 @@ use crate::load::{self, allows_sampling};
 use crate::mistake::Mistake;
 use crate::plan::{Plan, Wish};
 use crate::report::Report;
-use crate::scene::{self, Scene, writable};
+use crate::scene::{self, Frame, Scene, writable};
 use crate::sources::{Sources, is_same};
 use crate::value;
 use clap::{Args, ValueEnum};
@@ -12,6 +12,7 @@ use mipless::{Method, Options};
 use mipless_graph::CheckOptions;
 use mipless_runtime::image::Image;
 use mipless_runtime::image_file::{self, Bits, Format};
+use mipless_runtime::lit::Hiding;
 use mipless_runtime::view::Size;
 use serde_json::json;
 use std::path::PathBuf;
@@ -68,11 +69,17 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     };
 
     let begun = Instant::now();
-    let frame = scene.evaluate(&options, report)?;
+    let frame = match scene.lit(Hiding::Facets) {
+        Some(lit) => Frame {
+            mean: scene.evaluate_lit(&options, &lit, report)?,
+            variance: None,
+        },
+        None => scene.evaluate(&options, report)?,
+    };
     let taken = begun.elapsed();
 
     let unwritable = |error| Mistake::usage("unwritable-file", error);
-    let picture = scene.view.present(&frame.mean);
+    let picture = scene.present(&frame.mean);
     let bytes = image_file::encode(&arguments.out, &picture, format).map_err(unwritable)?;
     let mut files = vec![(arguments.out.clone(), bytes)];
     if let (Some(path), Some(variance)) = (&arguments.moments, &frame.variance) {
@@ -145,6 +152,10 @@ impl Arguments {
                 .scene
                 .open(&allows_sampling(self.method), default, report)?;
             self.guard(&scene)?;
+            if scene.sun.is_some() && self.moments.is_some() {
+                return Err(Mistake::usage("usage", "a lit material has no moments")
+                    .help("name a part of it by `--output`"));
+            }
             return Ok((scene, None));
         };
         let graph = load::graph(&self.scene.graph, report)?;
@@ -163,6 +174,7 @@ impl Arguments {
         load::warn(&self.scene.graph, &texture, report);
         let scene = self.scene.scene(texture, default)?;
         self.guard(&scene)?;
+        scene.needs_part()?;
         let plan = Plan::make(&scene, wish, filters, report)?;
         Ok((scene, Some(plan)))
     }

@@ -12,6 +12,7 @@ use mipless_runtime::cpu::Renderer;
 use mipless_runtime::device::{Device, DeviceChoice};
 use mipless_runtime::image::{Image, outputs};
 use mipless_runtime::job::Job;
+use mipless_runtime::lit::{self, Hiding, Lit, Sun};
 use mipless_runtime::view::{Flat, Size, View};
 use std::path::{Path, PathBuf};
 
@@ -43,6 +44,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true,
         value_parser = value::window)]
     window: Option<[f64; 4]>,
+
+    /// Where the sun stands over a material: degrees counter-clockwise from the right, 90 is ahead, and
+    /// degrees above the ground [default: 115,28 over a plane, 135,40 flat, 230,40 on a sphere]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true,
+        value_parser = value::sun)]
+    light: Option<Sun>,
 
     /// The filter over which a pixel is averaged; deviation in pixels
     #[arg(long, value_name = "gaussian:SD|box", default_value = "gaussian:0.5",
@@ -95,6 +102,8 @@ pub(crate) struct Scene {
     pub(crate) output: usize,
     /// The device that evaluates.
     pub(crate) device: Device,
+    /// The sun, where a material is looked at: the texture's outputs are then its parts.
+    pub(crate) sun: Option<Sun>,
     falls_back: bool,
 }
 
@@ -126,13 +135,63 @@ impl Arguments {
             return Err(Mistake::usage("usage", "`--window` is for the flat view")
                 .help("add `--view flat`"));
         }
+        if let Some(sun) = self.light
+            && sun.elevation <= 0.0
+            && self.view != ViewName::Sphere
+        {
+            let message = format!(
+                "a sun at {} degrees lights nothing of a plane",
+                sun.elevation
+            );
+            return Err(Mistake::usage("light-below-horizon", message)
+                .help("give it an elevation above 0, at most 90, or look at a `--view sphere`"));
+        }
+        if self.light.is_some() && self.output.is_some() {
+            return Err(Mistake::usage(
+                "usage",
+                "`--light` lights a material, and `--output` shows a part",
+            )
+            .help("leave one of them out"));
+        }
         Ok(())
     }
 
     /// A scene of a graph that is already loaded.
     pub(crate) fn scene(&self, texture: Texture, default: Size) -> Result<Scene, Mistake> {
         let parameters = settings(&texture, &self.settings)?;
-        let output = output(&texture, self.shown(&texture))?;
+        let material = match self.output {
+            Some(_) => None,
+            None => texture.material(
+                &lit::parts(),
+                &CheckOptions {
+                    allow_sampling: true,
+                },
+            ),
+        };
+        let is_lit = material.is_some();
+        let texture = match material {
+            Some(material) => material.map_err(|wrong| Mistake::graph(&self.graph, wrong))?,
+            None if self.light.is_some() => {
+                return Err(Mistake::usage(
+                    "no-surface",
+                    "`--light` lights a material, and the graph has none",
+                )
+                .help("end the graph in a `surface`"));
+            }
+            None => texture,
+        };
+        let (texture, output) = if is_lit {
+            (texture, 0)
+        } else {
+            let output = output(&texture, self.shown(&texture))?;
+            if texture.checked().graph().materials.is_empty() {
+                (texture, output)
+            } else {
+                // Of a material most parts are read one by one, and each costs what it reads.
+                let name = texture.outputs()[output].name.clone();
+                (texture.with_outputs(&[&name]), 0)
+            }
+        };
         let view = match self.view {
             ViewName::Plane => View::default(),
             ViewName::Flat => {
@@ -146,6 +205,7 @@ impl Arguments {
         })?;
         Ok(Scene {
             texture,
+            sun: is_lit.then(|| self.light.unwrap_or_else(|| Sun::of(&view))),
             view,
             size: self.size.unwrap_or(default),
             filter: self.pixel_filter,
@@ -192,7 +252,45 @@ impl Scene {
 
     /// The name of the output that is looked at.
     pub(crate) fn output_name(&self) -> &str {
-        &self.texture.outputs()[self.output].name
+        match self.sun {
+            Some(_) => "surface",
+            None => &self.texture.outputs()[self.output].name,
+        }
+    }
+
+    /// Refuses a material where methods are compared on one number after the other.
+    pub(crate) fn needs_part(&self) -> Result<(), Mistake> {
+        match self.sun {
+            None => Ok(()),
+            Some(_) => Err(
+                Mistake::usage("usage", "methods are measured on a part of a material")
+                    .help("name it by `--output`"),
+            ),
+        }
+    }
+
+    /// The light on the material, if one is looked at.
+    pub(crate) fn lit(&self, hiding: Hiding) -> Option<Lit> {
+        self.sun.map(|sun| Lit::new(&self.view, sun, hiding))
+    }
+
+    /// The picture that people see.
+    pub(crate) fn present(&self, image: &Image) -> Image {
+        match self.sun {
+            Some(_) => self.view.present_lit(image),
+            None => self.view.present(image),
+        }
+    }
+
+    /// Evaluates the material over the view, and lights it.
+    pub(crate) fn evaluate_lit(
+        &mut self,
+        options: &Options,
+        lit: &Lit,
+        report: &mut Report,
+    ) -> Result<Image, Mistake> {
+        let (program, all) = self.results(options, report)?;
+        Ok(lit.light(&program.interface, &all))
     }
 
     /// Evaluates the graph over the view. A GPU that was chosen on its own and fails is replaced by
@@ -202,6 +300,20 @@ impl Scene {
         options: &Options,
         report: &mut Report,
     ) -> Result<Frame, Mistake> {
+        let (program, all) = self.results(options, report)?;
+        let place = &outputs(&program.interface)[self.output];
+        Ok(Frame {
+            mean: all.mean(place),
+            variance: all.variance(place),
+        })
+    }
+
+    /// The program, and all of its results.
+    fn results(
+        &mut self,
+        options: &Options,
+        report: &mut Report,
+    ) -> Result<(Program, Image), Mistake> {
         let program = self.texture.compile(options);
         let label = options.method.to_string();
         let all = match self.on_gpu(&program, &label, report) {
@@ -219,11 +331,7 @@ impl Scene {
             }
             None => self.on_cpu(&program, &label, report)?,
         };
-        let place = &outputs(&program.interface)[self.output];
-        Ok(Frame {
-            mean: all.mean(place),
-            variance: all.variance(place),
-        })
+        Ok((program, all))
     }
 
     fn on_cpu(&self, program: &Program, label: &str, report: &Report) -> Result<Image, Mistake> {

@@ -61,6 +61,7 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
     let scene = arguments
         .scene
         .open(&CheckOptions::default(), default, report)?;
+    scene.needs_part()?;
     let (data, picture) = (out.join("trade.json"), out.join("trade.png"));
     let mut read = Sources::default();
     read.add_graph(&arguments.scene.graph, &scene.texture);

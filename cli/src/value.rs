@@ -1,6 +1,7 @@
 //! Values of arguments: sizes, windows, pixel filters, settings.
 
 use mipless::PixelFilter;
+use mipless_runtime::lit::Sun;
 use mipless_runtime::view::Size;
 
 /// The longest side of a picture, in pixels.
@@ -43,6 +44,24 @@ pub(crate) fn window(text: &str) -> Result<[f64; 4], String> {
         return Err("the window has no area".to_owned());
     }
     Ok(window)
+}
+
+/// Reads `120,30`: where the sun stands.
+pub(crate) fn sun(text: &str) -> Result<Sun, String> {
+    let form = || "write AZIMUTH,ELEVATION in degrees, such as 120,30".to_owned();
+    let (azimuth, elevation) = text.split_once(',').ok_or_else(form)?;
+    let degrees = |text: &str| {
+        let number: f64 = text.trim().parse().map_err(|_| form())?;
+        number.is_finite().then_some(number).ok_or_else(form)
+    };
+    let sun = Sun {
+        azimuth: degrees(azimuth)?,
+        elevation: degrees(elevation)?,
+    };
+    if sun.elevation.abs() > 90.0 {
+        return Err("an elevation is at most 90 degrees".to_owned());
+    }
+    Ok(sun)
 }
 
 /// Reads `gaussian:0.5` or `box`.
@@ -124,6 +143,18 @@ mod tests {
             "0,0,inf,1",
         ] {
             assert!(window(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn suns_stand_somewhere() {
+        let at = Sun {
+            azimuth: -20.5,
+            elevation: 30.0,
+        };
+        assert_eq!(sun("-20.5, 30"), Ok(at));
+        for wrong in ["30", "a,b", "0,91", "nan,3", "1,2,3"] {
+            assert!(sun(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -11,11 +11,12 @@ pub mod float;
 pub mod ir;
 mod lower;
 pub mod moments;
+pub mod shade;
 pub mod target;
 pub mod wgsl;
 
 pub use lower::{
     Audit, AuditedBand, AuditedOutput, Bundle, Ensemble, Image, Lower, Method, NodeDef, NodeRule,
     Options, Over, ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Slopes, SumOfSteps,
-    Upstream, Widened, audit, compile, pairs,
+    Upstream, Widened, audit, compile, jumps, pairs,
 };

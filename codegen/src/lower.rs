@@ -18,6 +18,7 @@ mod fusion;
 mod image;
 mod input;
 mod instead;
+mod jumps;
 mod map;
 mod method;
 mod mixture;
@@ -40,6 +41,7 @@ mod upstream;
 pub use audit::{Audit, AuditedBand, AuditedOutput, Remedy, Replaced};
 pub use definition::{NodeDef, SumOfSteps};
 pub use image::{Ensemble, Image, pairs};
+pub use jumps::jumps;
 pub use method::{Method, ParseMethodError, PixelFilter};
 pub use rule::{NodeRule, PartNames};
 pub use slope::Slopes;
@@ -55,6 +57,7 @@ use mipless_graph::{
 use rustc_hash::FxHashMap;
 use std::any::Any;
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The components of a node's output.
@@ -238,6 +241,8 @@ struct Compiler<'a> {
     tabulated: RefCell<FxHashMap<String, Tabulated>>,
     /// The functions of two signals, by their keys.
     maps: RefCell<FxHashMap<String, Map>>,
+    /// The nodes at which something jumps whose slopes are asked for.
+    jumps: RefCell<BTreeSet<usize>>,
     /// The functions of things, by their keys.
     images: RefCell<FxHashMap<String, Image>>,
     /// Whether regions are worth more than their closed form, by their shapes: of two signals 1 for a
@@ -265,6 +270,7 @@ impl<'a> Compiler<'a> {
             fused: RefCell::default(),
             shapes: RefCell::default(),
             maps: RefCell::default(),
+            jumps: RefCell::default(),
             images: RefCell::default(),
             gains: RefCell::default(),
             library: Library::default(),
@@ -319,6 +325,8 @@ pub struct Lower<'g, 'b> {
     reads_elsewhere: bool,
     /// The function of its things that the node at work is asked for.
     image: Option<Image>,
+    /// What nodes have made of the same inputs, by its keys: [`Self::jointly`].
+    made: FxHashMap<String, Bundle<'b>>,
     /// What sources have made of their things for nodes that follow.
     mixed: FxHashMap<usize, mixture::Mixed<'b>>,
 }
@@ -363,6 +371,7 @@ impl<'g, 'b> Lower<'g, 'b> {
             nonlinear: false,
             reads_elsewhere: false,
             image: None,
+            made: FxHashMap::default(),
             mixed: FxHashMap::default(),
         }
     }
@@ -445,6 +454,7 @@ impl<'g, 'b> Lower<'g, 'b> {
                 definition.spec.name, node.spec.name,
                 "the catalogue of the graph"
             );
+            self.algebra.jumped = false;
             self.algebra.bent = false;
             self.algebra.knots = 0;
             self.algebra.period = None;
@@ -462,6 +472,9 @@ impl<'g, 'b> Lower<'g, 'b> {
             );
             self.nonlinear |= self.algebra.bent;
             let mut slopes = self.slopes_of(&bundle, details);
+            if self.jumps(&bundle) {
+                self.compiler.jumps.borrow_mut().insert(index);
+            }
             if !is_mixed && let Some(fused) = self.fuse(index, node, &bundle) {
                 bundle = fused;
                 for (slope, signal) in slopes.iter_mut().zip(&bundle) {

@@ -95,6 +95,10 @@ pub struct Algebra<'b> {
     pub shares: bool,
     /// Whether an operation since this was last cleared was not linear in a signal with a spread.
     pub bent: bool,
+    /// Whether it is asked on what share of a footprint slopes are.
+    pub(crate) shares_slopes: bool,
+    /// Whether a function has jumped whose derivative was asked for, since it was last cleared.
+    pub(crate) jumped: bool,
     /// The most knots of a transfer since [`Self::bent`] was last cleared.
     pub(crate) knots: u32,
     /// The period of the last transfer that bent, where it has one.
@@ -114,6 +118,8 @@ impl<'b> Algebra<'b> {
             mode,
             shares: false,
             bent: false,
+            shares_slopes: false,
+            jumped: false,
             knots: 0,
             period: None,
             derives: false,

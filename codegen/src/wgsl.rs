@@ -32,6 +32,14 @@
 //! Pixel `index` is invocation `(index % 65536, index / 65536)`, so dispatch [`workgroups`]. What is
 //! not below the length of binding 0 does nothing.
 //!
+//! # Shading
+//! From [`emit_shaded`] there are two functions of a material's parts (see [`crate::shade`]), which take the
+//! struct of outputs:
+//! ```wgsl
+//! fn marble_shade(surface: MarbleOutputs, view: vec3f, light: vec3f, light_color: vec3f) -> vec3f
+//! fn marble_shade_sky(surface: MarbleOutputs, view: vec3f, sky: array<vec3f, 9>) -> vec3f
+//! ```
+//!
 //! # The fragment entry point
 //! `marble_fragment` takes `uv` at location 0 and returns one `vec4f` per output, at locations 0, 1,
 //! …: a single number as grey, alpha 1 where there is none. `du` and `dv` are its screen-space
@@ -45,6 +53,7 @@ mod gap;
 mod name;
 mod part;
 mod reserved;
+mod shading;
 mod spelled;
 mod statement;
 mod wrapped;
@@ -226,6 +235,8 @@ pub struct Shader {
     pub source: String,
     /// The texture's function.
     pub function: String,
+    /// The functions that shade its outputs, if they were asked for: by a light, and by a sky.
+    pub shading: Vec<String>,
     /// The entry point, if one was asked for.
     pub entry_point: Option<EntryPoint>,
     /// Every binding, in order.
@@ -279,6 +290,19 @@ impl Shader {
 /// If the program breaks an invariant of the IR, or its interface does not fit its entry: see
 /// [`verify`](crate::ir::verify).
 pub fn emit(program: &Program, options: &Options) -> Shader {
+    emitted(program, options, false)
+}
+
+/// Emits a program whose outputs are parts of a material, with functions that shade them: see the module's
+/// documentation.
+///
+/// # Panics
+/// As [`emit`].
+pub fn emit_shaded(program: &Program, options: &Options) -> Shader {
+    emitted(program, options, true)
+}
+
+fn emitted(program: &Program, options: &Options, is_shaded: bool) -> Shader {
     let module = &program.module;
     let prefix = callable(identifier(&program.interface.name));
     let stem = prefix.strip_suffix("_value").unwrap_or(&prefix);
@@ -358,6 +382,11 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     apart::write(&mut context, &written);
     let text = entry_text(program, &names, &face);
     function::write(&mut context, FunctionId::from_index(last), Some(&text));
+    let shading = if is_shaded {
+        shading::push(&mut context, &names, &face, stem)
+    } else {
+        Vec::new()
+    };
 
     let Context {
         mut globals,
@@ -380,6 +409,7 @@ pub fn emit(program: &Program, options: &Options) -> Shader {
     Shader {
         source,
         function: names.function,
+        shading,
         entry_point,
         bindings,
         parameters: face.parameters,

@@ -16,6 +16,7 @@
 
 mod class;
 mod closure;
+mod material;
 mod pole;
 mod reached;
 mod report;
@@ -301,6 +302,14 @@ pub fn check(graph: Graph, options: &CheckOptions) -> Result<Checked, Vec<Diagno
         }
         errors.extend(unread_files(&graph, node));
         warnings.extend(diagonal_position(&graph, node, behaviour));
+        // Several nodes are parts of one material.
+        for warning in material::warnings(&graph, &signals, node) {
+            let known =
+                |other: &Diagnostic| other.code == warning.code && other.pointer == warning.pointer;
+            if !warnings.iter().any(known) {
+                warnings.push(warning);
+            }
+        }
     }
     if errors.is_empty() {
         Ok(Checked {

@@ -1,7 +1,7 @@
 //! The resolved graph: names are ids, sub-graphs are expanded, types are promoted, and nodes stand
 //! in topological order.
 
-use crate::{Images, Literal, NodeSpec, Type};
+use crate::{Images, Literal, MaterialPart, NodeSpec, Type};
 
 /// A node of a graph, by its position: inputs come before their users.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -90,6 +90,20 @@ impl Node {
             ),
         }
     }
+
+    /// The part of a material that the node is.
+    pub fn part(&self) -> Option<&'static MaterialPart> {
+        let (_, parts) = self.spec.material()?;
+        match self.literal("output") {
+            Literal::Text(chosen) => parts.iter().find(|part| part.name == chosen),
+            _ => None,
+        }
+    }
+
+    /// Whether the mean of the node's values at points is what is right over a footprint.
+    pub fn is_mean(&self) -> bool {
+        self.part().is_none_or(|part| part.is_mean)
+    }
 }
 
 /// An input of the graph.
@@ -136,6 +150,9 @@ pub struct Graph {
     pub nodes: Vec<Node>,
     /// The outputs, in the document's order; at least one.
     pub outputs: Vec<Output>,
+    /// The nodes that give materials, with all of their inputs, whatever parts are outputs:
+    /// [`Graph::with_parts`].
+    pub materials: Vec<Node>,
     /// The pictures that the nodes name, as far as whoever owns the files has put them here.
     pub images: Images,
 }
@@ -147,5 +164,15 @@ impl Graph {
     /// The node `id`.
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.index()]
+    }
+
+    /// The graph with those of its outputs alone that have these names, in their order; what no other
+    /// output needs is then not computed.
+    pub fn with_outputs(&self, names: &[&str]) -> Self {
+        let named = |name: &&str| self.outputs.iter().find(|output| output.name == **name);
+        Self {
+            outputs: names.iter().filter_map(named).cloned().collect(),
+            ..self.clone()
+        }
     }
 }

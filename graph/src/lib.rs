@@ -37,8 +37,8 @@ pub use resolve::{MAX_NESTING, MAX_NODES, linear_from_srgb, resolve};
 pub use schema::schema;
 pub use setting::{SettingError, parse_setting};
 pub use spec::{
-    Behaviour, Category, ClassRule, Default, Doc, InputView, NodeSpec, OutputType, PortSpec,
-    PortType, Range, ReachRule,
+    Behaviour, Category, ClassRule, Default, Doc, InputView, MaterialPart, NodeSpec, OutputType,
+    PortSpec, PortType, Range, ReachRule,
 };
 pub use types::{Literal, Stop, Stops, Type};
 

@@ -11,6 +11,7 @@
 mod connect;
 mod expand;
 mod literal;
+mod material;
 mod nesting;
 mod order;
 mod range;

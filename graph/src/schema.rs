@@ -194,6 +194,7 @@ fn node(spec: &NodeSpec) -> Value {
         OutputType::Colored => "the type of the colour",
         OutputType::Stops => "the type of the stops",
         OutputType::Picture { .. } => "the type that is named, or that of the stops",
+        OutputType::Material { .. } => "the parts of a material, each an output of the graph",
     };
     let category: Category = spec.category;
     let description = format!("{} ({}; out: {output})", spec.summary, category.name());

@@ -241,6 +241,41 @@ pub enum OutputType {
         /// The type.
         named: &'static str,
     },
+    /// A material: the node ends a graph. Its choice `output` names each of the parts, after one name
+    /// that stands for all those of the model that the [`PortType::Choice`] input `model` names.
+    Material {
+        /// The model.
+        model: &'static str,
+        /// The parts, in the order of the choice's names after the first.
+        parts: &'static [MaterialPart],
+    },
+}
+
+/// A part of a material: what a host reads under one name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialPart {
+    /// The name, that of the model.
+    pub name: &'static str,
+    /// Its type.
+    pub ty: Type,
+    /// The models that have it; none for what only those ask for who shade by moments.
+    pub models: &'static [&'static str],
+    /// The inputs that it depends on, besides uniform ones: no other is computed for it.
+    pub reads: &'static [&'static str],
+    /// Whether the mean of its values at points is what is right over a footprint: not of a roughness,
+    /// which is wider by the slopes that differ there.
+    pub is_mean: bool,
+    /// Whether it tells what slopes have in common with other signals, or on what share of the footprint
+    /// they are: that is kept where it is asked for.
+    pub is_joint: bool,
+}
+
+impl MaterialPart {
+    /// Whether a material of this model has the part by that name; what only moments are is there in
+    /// every one.
+    pub fn is_of(&self, model: &str) -> bool {
+        self.models.is_empty() || self.models.contains(&model)
+    }
 }
 
 /// The parts of a node's reference page; Markdown without headings.
@@ -381,6 +416,15 @@ impl NodeSpec {
         let position = self.input("output")?;
         match self.inputs[position].ty {
             PortType::Choice(names) => Some((position, names)),
+            _ => None,
+        }
+    }
+
+    /// The parts of a material with the name of the input that chooses its model, if that is what the
+    /// node gives.
+    pub const fn material(&self) -> Option<(&'static str, &'static [MaterialPart])> {
+        match self.output {
+            OutputType::Material { model, parts } => Some((model, parts)),
             _ => None,
         }
     }

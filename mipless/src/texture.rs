@@ -130,6 +130,7 @@ impl Texture {
         match check(graph, options) {
             Ok(checked) if !unusable => {
                 diagnostics.extend(checked.warnings().iter().cloned());
+                diagnostics.extend(jumps(&checked));
                 Ok(Self {
                     checked,
                     document,
@@ -145,6 +146,26 @@ impl Texture {
                 Err(diagnostics)
             }
         }
+    }
+
+    /// The parts of the graph's material by these names, of those that it has, as a texture of which they
+    /// are the outputs, whatever the graph's own are. `None` where the graph has no material.
+    ///
+    /// # Errors
+    /// The mistakes that only such parts have.
+    pub fn material(
+        &self,
+        parts: &[&str],
+        options: &CheckOptions,
+    ) -> Option<Result<Self, Vec<Diagnostic>>> {
+        let graph = self.checked.graph();
+        let graph = graph.with_parts(graph.materials.first()?, parts);
+        let checked = check(graph, options);
+        Some(checked.map(|checked| Self {
+            checked,
+            document: self.document.clone(),
+            warnings: Vec::new(),
+        }))
     }
 
     /// The document, to edit and to save; load the result again.
@@ -177,6 +198,24 @@ impl Texture {
         &self.checked.graph().outputs
     }
 
+    /// The texture with those of its outputs alone that have these names, in their order: what only others
+    /// need is not computed.
+    ///
+    /// # Panics
+    /// If it has none of them: a bug of the caller.
+    pub fn with_outputs(&self, names: &[&str]) -> Self {
+        let graph = self.checked.graph().with_outputs(names);
+        assert!(!graph.outputs.is_empty(), "outputs of the texture");
+        // What has no statistics was allowed before, or is not there.
+        let options = CheckOptions {
+            allow_sampling: true,
+        };
+        Self {
+            checked: check(graph, &options).expect("what is read has been checked"),
+            ..self.clone()
+        }
+    }
+
     /// What the check says of each node's signal.
     pub fn signals(&self) -> &[Signal] {
         self.checked.signals()
@@ -197,4 +236,22 @@ impl Texture {
     pub fn evaluator(&self, options: &Options) -> TextureEvaluator {
         TextureEvaluator::new(self.parameters().to_vec(), &self.compile(options))
     }
+}
+
+/// Warnings of heights that jump.
+fn jumps(checked: &Checked) -> Vec<Diagnostic> {
+    let nodes = mipless_codegen::jumps(checked, crate::catalogue());
+    let warn = |id| {
+        let node = checked.graph().node(id);
+        let message = format!("the height of a material jumps at `{}`", node.name);
+        Diagnostic::warning("height-jumps", message)
+            .at(&*node.pointer)
+            .in_node(&*node.name)
+            .because(
+                "a jump has no slope: what is counted of it is that of its first Hermite \
+                 polynomials, a lower bound",
+            )
+            .help("make its edge a ramp: `smoothstep` in place of `step`, a `bevel`, a linear ramp")
+    };
+    nodes.into_iter().map(warn).collect()
 }

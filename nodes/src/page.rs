@@ -44,11 +44,18 @@ pub fn page(def: &NodeDef) -> String {
         output_text(spec.output)
     ));
     if let Some((_, names)) = spec.selector() {
+        let parts = spec.material().map_or(&[][..], |(_, parts)| parts);
         for name in names {
-            line(format_args!(
-                "| `{name}` | {} | – | – | – | The result where `output` is `{name}`. |",
-                output_text(spec.output)
-            ));
+            let part = parts.iter().find(|part| part.name == *name);
+            let text = part.map_or(output_text(spec.output), |part| part.ty.name());
+            let models = match part {
+                Some(part) if !part.models.is_empty() => {
+                    format!("By `{}`.", part.models.join("`, `"))
+                }
+                Some(_) => "By every model, where it is asked for.".to_owned(),
+                None => format!("The result where `output` is `{name}`."),
+            };
+            line(format_args!("| `{name}` | {text} | – | – | – | {models} |"));
         }
     }
     line(format_args!("\n## Statistics\n\n{}", spec.doc.statistics));
@@ -134,6 +141,7 @@ fn output_text(output: OutputType) -> &'static str {
         OutputType::Picture { .. } => {
             "with a file the type that is named, else that of the stops' values"
         }
+        OutputType::Material { .. } => "a material",
     }
 }
 
@@ -162,10 +170,19 @@ fn describe_node(def: &NodeDef) -> Value {
         OutputType::Colored => "colored",
         OutputType::Stops => "stops",
         OutputType::Picture { .. } => "named or stops",
+        OutputType::Material { .. } => "material",
     };
     let others = spec.selector().map_or(&[][..], |(_, names)| names);
+    let parts = spec.material().map_or(&[][..], |(_, parts)| parts);
     let outputs: Map<String, Value> = (["out"].iter().chain(others))
-        .map(|name| ((*name).to_owned(), json!({ "type": output })))
+        .map(|name| {
+            let part = parts.iter().find(|part| part.name == *name);
+            let described = match part {
+                Some(part) => json!({ "type": part.ty.name(), "models": part.models }),
+                None => json!({ "type": output }),
+            };
+            ((*name).to_owned(), described)
+        })
         .collect();
     // An example that is no JSON would fail the tests; tools then get its text.
     let example: Value =

@@ -7,6 +7,8 @@
 //!   means and, where the program computes them, variances, unlit and without a background.
 //! - [`image::Image::mean`] takes one output out of it, [`view::View::present`] lights it and puts
 //!   the background behind it, [`image_file`] writes it as PNG or EXR.
+//! - [`lit::Lit`] lights the material of a graph instead: from the moments that a program gives of it, or, as
+//!   the truth, facet by facet.
 //! - [`device::Device`] is the choice between the two. [`metrics`] says how far two images are apart, and [`compare`] sets them side by side.
 //! - [`plan`] measures error and cost of the methods and chooses one; [`chart`] draws what it found.
 //!
@@ -27,6 +29,7 @@ pub mod image;
 #[cfg(feature = "files")]
 pub mod image_file;
 pub mod job;
+pub mod lit;
 pub mod metrics;
 pub mod plan;
 mod size;

@@ -13,6 +13,7 @@ mod sphere;
 
 pub use flat::Flat;
 pub use plane::Plane;
+pub(crate) use plane::clear_sky;
 pub use sphere::Sphere;
 
 use mipless_codegen::cpu::{Footprint, Position};
@@ -40,6 +41,10 @@ pub struct Hit {
     pub shade: f64,
     /// The share of the pixel that the surface covers, above 0 and at most 1.
     pub coverage: f64,
+    /// Unit vectors of space along u, along v, and along the normal of the surface.
+    pub frame: [[f64; 3]; 3],
+    /// The unit vector towards the eye, in space.
+    pub eye: [f64; 3],
 }
 
 impl Hit {
@@ -158,10 +163,34 @@ impl View {
             .collect()
     }
 
+    /// The unit vector of space towards a distant light: `azimuth` degrees counter-clockwise from the right
+    /// as it is seen from above, where 90 is ahead (in the flat view the top of the picture), and
+    /// `elevation` degrees above the ground.
+    pub fn towards(&self, azimuth: f64, elevation: f64) -> [f64; 3] {
+        let ((sin, cos), (up, level)) = (
+            azimuth.to_radians().sin_cos(),
+            elevation.to_radians().sin_cos(),
+        );
+        let [right, ahead] = [level * cos, level * sin];
+        match self {
+            Self::Flat(_) => [right, -ahead, up],
+            Self::Plane(_) | Self::Sphere(_) => [right, up, -ahead],
+        }
+    }
+
+    /// The picture of a surface that is lit already, `image`, a colour, with the background behind it.
+    pub fn present_lit(&self, image: &Image) -> Image {
+        self.presented(image, |_| 1.0)
+    }
+
     /// The picture that people see: `image`, a colour (`R,G,B[,A]`) or a float (`Y`) evaluated over
     /// this view, with the light of the view on it and the background behind it. Other images, such
     /// as vectors, come back as they are.
     pub fn present(&self, image: &Image) -> Image {
+        self.presented(image, |hit| hit.shade)
+    }
+
+    fn presented(&self, image: &Image, light: impl Fn(&Hit) -> f64) -> Image {
         let size = image.size();
         let mut picture = image.clone();
         let lit = match image.names().iter().map(String::as_str).collect::<Vec<_>>()[..] {
@@ -177,17 +206,17 @@ impl View {
             let hit = self
                 .hit(size, point)
                 .filter(|hit| hit.footprint().is_some());
-            let (shade, coverage) = hit.map_or((0.0, 0.0), |hit| (hit.shade, hit.coverage));
+            let (shade, coverage) = hit.map_or((0.0, 0.0), |hit| (light(&hit), hit.coverage));
             let behind = self.background(size, point);
             let luminance = 0.2126 * behind[0] + 0.7152 * behind[1] + 0.0722 * behind[2];
             let behind = if lit == 1 { [luminance; 3] } else { behind };
             for (channel, data) in picture.channels_mut().iter_mut().enumerate() {
-                let (light, behind) = if channel < lit {
+                let (factor, behind) = if channel < lit {
                     (shade, behind[channel])
                 } else {
                     (1.0, 1.0)
                 };
-                let front = f64::from(data[index]) * light;
+                let front = f64::from(data[index]) * factor;
                 data[index] = (coverage * front + (1.0 - coverage) * behind) as f32;
             }
         }

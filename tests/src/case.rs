@@ -35,6 +35,11 @@ impl Case {
             texture,
         }
     }
+
+    /// Whether it is a material.
+    fn is_material(&self) -> bool {
+        !self.texture.checked().graph().materials.is_empty()
+    }
 }
 
 /// A random graph, as the one of its seed.
@@ -59,11 +64,31 @@ pub fn load(text: &str) -> Result<Texture, Vec<Diagnostic>> {
     Texture::with_files(text, &CheckOptions::default(), &folder)
 }
 
-/// The graphs of `graphs/`, by name.
+/// The graphs of `graphs/` that are no materials, by name.
 ///
 /// # Panics
 /// If one cannot be read or has mistakes.
 pub fn graphs() -> Vec<Case> {
+    let mut graphs = files();
+    graphs.retain(|case| !case.is_material());
+    graphs
+}
+
+/// The materials of `graphs/`, by name.
+///
+/// # Panics
+/// If one cannot be read or has mistakes.
+pub fn materials() -> Vec<Case> {
+    let mut graphs = files();
+    graphs.retain(Case::is_material);
+    graphs
+}
+
+/// All graphs of `graphs/`, by name.
+///
+/// # Panics
+/// If one cannot be read or has mistakes.
+pub fn files() -> Vec<Case> {
     let folder = root().join("graphs");
     let mut files: Vec<_> = fs::read_dir(&folder)
         .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))

@@ -17,6 +17,7 @@
 //! | `names` | whatever things are called, every target compiles |
 //! | `linear` | what a graph costs grows as the graph does |
 //! | `parity` | nodes with a name of MaterialX's compute at a point what its shader computes |
+//! | `shading` | what `shade` makes of filtered surfaces, against facets that are shaded one by one |
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `importing`, `importing_json` | what each rule makes of documents of other tools |
 //! | `corpus` | public documents of other tools, where they are at hand |
@@ -36,6 +37,7 @@ pub mod random;
 pub mod random_graph;
 pub mod reduce;
 pub mod shown;
+pub mod surface;
 pub mod thumbnail;
 pub mod timing;
 pub mod tolerance;

@@ -420,6 +420,7 @@ fn output(spec: &NodeSpec, inputs: &Map<String, Value>, widest: Type, stops: Typ
         OutputType::Colored => Type::Color3,
         OutputType::Picture { file, named: port } if inputs.contains_key(file) => named(port),
         OutputType::Picture { .. } | OutputType::Stops => stops,
+        OutputType::Material { .. } => unreachable!("a material ends a graph"),
     }
 }
 

@@ -99,7 +99,7 @@ fn the_book_is_whole_in_itself() {
 #[test]
 fn every_graph_of_the_book_has_a_place_in_the_gallery() {
     let gallery = Markdown::read(&root().join("docs/book/src/gallery.md"));
-    for case in mipless_tests::case::graphs() {
+    for case in mipless_tests::case::files() {
         let picture = format!("images/{}.png", case.name);
         let graph = format!("../../../graphs/{}.json", case.name);
         assert!(gallery.links().contains(&picture), "no {picture}");

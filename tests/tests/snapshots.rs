@@ -7,7 +7,7 @@
 use mipless::wgsl::{Entry, Options as Emission, emit};
 use mipless::{Method, Options, Program, Texture};
 use mipless_codegen::ir::{Module, verify};
-use mipless_tests::case::{Case, all, graphs};
+use mipless_tests::case::{Case, all, graphs, materials};
 use mipless_tests::{METHODS, generated, name_of};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -19,6 +19,17 @@ const SHOWN: [(Method, &str); 3] = [
     (Method::Local, "wgsl"),
     (Method::Auto, "wgsl"),
 ];
+
+/// What is shown of every material, whose parts are many and alike.
+const SHOWN_OF_MATERIALS: [(Method, &str); 1] = [(Method::Local, "wgsl")];
+
+/// Every graph with what is shown of it.
+fn shown() -> Vec<(Case, Vec<(Method, &'static str)>)> {
+    let graphs = graphs().into_iter().map(|case| (case, SHOWN.to_vec()));
+    let materials = materials().into_iter();
+    let materials = materials.map(|case| (case, SHOWN_OF_MATERIALS.to_vec()));
+    graphs.chain(materials).collect()
+}
 
 fn compile(texture: &Texture, method: Method) -> Program {
     texture.compile(&Options {
@@ -59,8 +70,8 @@ fn every_graph_compiles_to_what_it_did() {
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     settings.bind(|| {
-        for case in graphs() {
-            for (method, what) in SHOWN {
+        for (case, shown) in shown() {
+            for (method, what) in shown {
                 let program = compile(&case.texture, method);
                 let text = match what {
                     "ir" => ir_text(&program),
@@ -74,8 +85,13 @@ fn every_graph_compiles_to_what_it_did() {
 
 #[test]
 fn no_snapshot_is_left_over() {
-    let used: Vec<String> = (graphs().iter())
-        .flat_map(|case| SHOWN.map(|(method, what)| name_of_snapshot(case, method, what) + ".snap"))
+    let used: Vec<String> = (shown().iter())
+        .flat_map(|(case, shown)| {
+            let names = shown
+                .iter()
+                .map(|&(method, what)| name_of_snapshot(case, method, what));
+            names.map(|name| name + ".snap").collect::<Vec<_>>()
+        })
         .collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
     let stale: Vec<String> = generated::names(&folder, ".snap")

@@ -5,6 +5,7 @@ mod bad_graphs;
 mod documents;
 mod folder;
 mod images;
+mod light;
 mod names;
 mod overwrite;
 

@@ -25,6 +25,8 @@ pub(super) struct Facts {
     pub(super) drawn: FxHashMap<usize, drawn::Drawn>,
     /// Whether the surface's place shapes each node's output.
     pub(super) placed: Vec<bool>,
+    /// Whether it is asked what slopes have in common with other signals, and on what share they are.
+    pub(super) joint: bool,
     /// The nodes that are functions of things.
     pub(super) mixtures: mixture::Mixtures,
 }
@@ -41,6 +43,7 @@ impl Facts {
             rehearses: false,
             drawn: FxHashMap::default(),
             placed: symbols::placed(graph),
+            joint: symbols::joint(graph, &live),
             mixtures: mixture::Mixtures::default(),
             live,
         }

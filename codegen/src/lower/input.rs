@@ -39,6 +39,25 @@ impl<'b> Lower<'_, 'b> {
         function
     }
 
+    /// Signals that several nodes make of the same inputs. Where it is asked what they have in common with
+    /// others, they are made once in a function, and what is fresh in them stays theirs; elsewhere each
+    /// node has its own. The key names whatever they depend on.
+    pub fn jointly(&mut self, key: &str, make: impl FnOnce(&mut Self) -> Bundle<'b>) -> Bundle<'b> {
+        if !self.compiler.facts.joint || self.in_rule {
+            return make(self);
+        }
+        if let Some(known) = self.made.get(key) {
+            return known.clone();
+        }
+        let mut bundle = make(self);
+        for signal in &mut bundle {
+            self.algebra.publish(signal);
+        }
+        self.carriers.born(&bundle);
+        self.made.insert(key.to_owned(), bundle.clone());
+        bundle
+    }
+
     /// The surface's position: cell and fraction, g = A.
     pub fn surface(&self) -> Bundle<'b> {
         let mut place = self.coordinates(self.arguments.footprint);

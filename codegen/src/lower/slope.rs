@@ -26,26 +26,31 @@ pub struct Slopes<'b> {
     pub rows: [Vec2<'b>; 2],
     /// The covariance of what is beyond them.
     pub rest: Sym2<'b>,
+    /// The share of the footprint that is not flat.
+    pub share: Float<'b>,
 }
 
-/// How many numbers they are.
-const PARTS: usize = 9;
+/// How many numbers they are, the share last.
+const PARTS: usize = 10;
 
 /// The names of the numbers.
 const NAMES: [&str; PARTS] = [
-    "u", "v", "u_gx", "u_gy", "v_gx", "v_gy", "rest_uu", "rest_uv", "rest_vv",
+    "u", "v", "u_gx", "u_gy", "v_gx", "v_gy", "rest_uu", "rest_uv", "rest_vv", "share",
 ];
 
 impl<'b> Slopes<'b> {
     fn flat(b: &'b Builder) -> Self {
-        Self::of([b.float(0.0); PARTS])
+        let mut parts = [b.float(0.0); PARTS];
+        parts[PARTS - 1] = b.float(1.0);
+        Self::of(parts)
     }
 
-    fn of([u, v, ux, uy, vx, vy, uu, uv, vv]: [Float<'b>; PARTS]) -> Self {
+    fn of([u, v, ux, uy, vx, vy, uu, uv, vv, share]: [Float<'b>; PARTS]) -> Self {
         Self {
             mean: Vec2([u, v]),
             rows: [Vec2([ux, uy]), Vec2([vx, vy])],
             rest: Sym2([uu, uv, vv]),
+            share,
         }
     }
 }
@@ -90,8 +95,13 @@ impl<'b> Lower<'_, 'b> {
         arguments.footprint.right = [first, side];
         arguments.footprint.down = [zero, last];
         let results = self.algebra.b.call(&function, arguments);
-        let mut slopes: Vec<Slopes<'b>> = (results.as_chunks::<PARTS>().0.iter())
-            .map(|&parts| Slopes::of(parts))
+        let count = parts(compiler);
+        let mut slopes: Vec<Slopes<'b>> = (results.chunks_exact(count))
+            .map(|parts| {
+                let mut all = [b.float(1.0); PARTS];
+                all[..count].copy_from_slice(parts);
+                Slopes::of(all)
+            })
             .collect();
         // A float is every component; the alpha that a colour lacks is 1.
         if let [one] = slopes[..] {
@@ -192,6 +202,15 @@ fn removed<'b>(
     rest * (turns / major * (square / (square + 0.25)) * 0.5)
 }
 
+/// How many of the numbers are given: the share where it is asked for.
+fn parts(compiler: &Compiler<'_>) -> usize {
+    if compiler.facts.joint {
+        PARTS
+    } else {
+        PARTS - 1
+    }
+}
+
 /// How a node's output changes, as a function of the footprint.
 fn function(
     compiler: &Compiler<'_>,
@@ -210,6 +229,7 @@ fn function(
     let mut lower = Lower::new(compiler, module, b, mode);
     lower.measures = true;
     lower.algebra.derives = true;
+    lower.algebra.shares_slopes = compiler.facts.joint;
     let bundle = lower.run_alone(source.index());
     for (i, signal) in bundle.iter().enumerate() {
         let flat = || {
@@ -224,8 +244,9 @@ fn function(
         let rest = [u.other_variance(), crossed, v.other_variance()];
         let numbers = [u.flat_mean(), v.flat_mean(), ux, uy, vx, vy]
             .into_iter()
-            .chain(rest);
-        for (name, number) in NAMES.into_iter().zip(numbers) {
+            .chain(rest)
+            .chain([Signal::share_of([u, v])]);
+        for (name, number) in NAMES.into_iter().take(parts(compiler)).zip(numbers) {
             b.result(format!("{name}_{i}"), number);
         }
     }

@@ -40,6 +40,12 @@ pub(super) fn reads_position(graph: &Graph) -> bool {
     })
 }
 
+/// Whether a live part of a material tells what slopes have in common with other signals.
+pub(super) fn joint(graph: &Graph, live: &[u32]) -> bool {
+    let mut nodes = graph.nodes.iter().zip(live);
+    nodes.any(|(node, &uses)| uses > 0 && node.part().is_some_and(|part| part.is_joint))
+}
+
 /// Whether something that follows each node combines different components of it, so that what they
 /// share matters; a node whose inputs and output are all of one polymorphic type does not.
 pub(super) fn crossed(graph: &Graph) -> Vec<bool> {

@@ -307,6 +307,25 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
         Some([low, low + knot.jump.as_constant()?])
     }
 
+    fn values(&self) -> Option<[f32; 2]> {
+        let mut value = self.offset.as_constant().filter(|_| self.slope.is_zero())?;
+        let mut values = [value; 2];
+        for knot in &self.knots {
+            if !knot.bend.is_zero() {
+                return None;
+            }
+            value += knot.jump.as_constant()?;
+            if value == values[0] || value == values[1] {
+                continue;
+            }
+            if values[0] != values[1] {
+                return None;
+            }
+            values[1] = value;
+        }
+        Some(values)
+    }
+
     fn knots(&self) -> u32 {
         self.knots.len() as u32
     }

@@ -1,5 +1,6 @@
 //! A scalar signal with its first two moments in factored form, and the linear rules.
 
+mod share;
 mod slope;
 
 use super::position;
@@ -7,6 +8,7 @@ use crate::ir::{Bool, Builder, Float, Int, Operand, Sym2, Vec2};
 use smallvec::SmallVec;
 use std::ops::{Add, Mul, Neg, Sub};
 
+pub(super) use share::{of_function, of_terms};
 pub use slope::Slope;
 use slope::combined;
 
@@ -36,6 +38,9 @@ pub struct Signal<'b> {
     pub binary: Option<[Float<'b>; 2]>,
     /// The symbol of this signal's second Hermite polynomial, where several transfers read it.
     pub hermite: Option<Symbol>,
+    /// Of a slope: the share of the footprint that has it, 3 E[X²]²/E[X⁴], as of a Gaussian there and 0
+    /// elsewhere; `None` for a Gaussian's 1.
+    pub share: Option<Float<'b>>,
     /// How the signal changes with u and with v, where that is carried and known.
     pub slope: Option<Slope<'b>>,
 }
@@ -83,6 +88,7 @@ impl<'b> Signal<'b> {
             range,
             binary: None,
             hermite: None,
+            share: None,
             slope: None,
         }
     }
@@ -237,6 +243,7 @@ impl<'b> Signal<'b> {
             },
             binary: self.binary.map(|values| values.map(|v| v * by)),
             hermite: None,
+            share: self.share,
             slope: self.map_slope(|slope| slope.scale(by)),
         }
     }
@@ -291,6 +298,7 @@ impl<'b> Signal<'b> {
             range: [x.range[0].min(y.range[0]), x.range[1].max(y.range[1])],
             binary: None,
             hermite: None,
+            share: share::either(&x, &y, condition),
             slope: combined(&x, &y, |p, q| p.select(condition, q)),
         }
     }
@@ -382,6 +390,7 @@ impl<'b> Add for &Signal<'b> {
             ],
             binary,
             hermite: None,
+            share: share::of_sum(self, other),
             slope: combined(self, other, |p, q| p + q),
         }
     }

@@ -16,7 +16,7 @@
 //! covariance Σ_kl [cov(A_ki, A_lj) cov(Y_k, Y_l) + cov(A_ki, Y_l) cov(Y_k, A_lj)], which both slopes
 //! carry as symbols that they share.
 
-use super::signal::symbols_of;
+use super::signal::{of_function, of_terms, symbols_of};
 use super::{Algebra, Gaussian, Mode, Signal, Slope, Transfer, spread};
 use crate::ir::{Float, Sym2, Vec2};
 use std::rc::Rc;
@@ -51,9 +51,12 @@ impl<'b> Algebra<'b> {
                 continue;
             }
             if pair.iter().all(|slope| slope.is_certain()) {
-                let factor = factor.flat();
+                let factor = Signal {
+                    share: (self.shares_slopes).then(|| factor.evenness() * 3.0),
+                    ..plain(&factor.flat())
+                };
                 for (sum, slope) in out.iter_mut().zip(pair) {
-                    *sum = &*sum + plain(&factor) * slope.mean;
+                    *sum = &*sum + &factor * slope.mean;
                 }
                 continue;
             }
@@ -62,6 +65,7 @@ impl<'b> Algebra<'b> {
         if uncertain.is_empty() {
             return Rc::new(out);
         }
+        let shares = self.shares(&out, &uncertain);
         let mut fresh = [b.float(0.0); 3];
         for &(factor, pair) in &uncertain {
             let mean = factor.flat_mean();
@@ -93,7 +97,29 @@ impl<'b> Algebra<'b> {
             }
         }
         self.attach_joint(&mut out, &fresh);
+        for (slope, share) in out.iter_mut().zip(shares) {
+            slope.share = share;
+        }
         Rc::new(out)
+    }
+
+    /// On what shares of the footprint both components of a sum of terms are slopes.
+    fn shares(&self, rest: &[Signal<'b>; 2], uncertain: &[Term<'_, 'b>]) -> [Option<Float<'b>>; 2] {
+        if !self.shares_slopes {
+            return [None, None];
+        }
+        [0, 1].map(|i| {
+            let one = self.b.float(1.0);
+            let rest = [rest[i].second_moment(), rest[i].share.unwrap_or(one)];
+            let terms = uncertain.iter().map(|&(factor, pair)| {
+                [
+                    factor.second_moment() * pair[i].second_moment(),
+                    pair[i].share_times(factor.evenness()),
+                ]
+            });
+            let all: Vec<[Float<'b>; 2]> = std::iter::once(rest).chain(terms).collect();
+            of_terms(&all)
+        })
     }
 
     /// T′(X): of the function's own derivative, where it has one that is averaged in closed form. Else
@@ -103,10 +129,29 @@ impl<'b> Algebra<'b> {
     pub(super) fn derivative(&mut self, x: &Signal<'b>, t: &dyn Transfer<'b>) -> Signal<'b> {
         if let Some(derivative) = t.derivative() {
             let bent = (self.bent, self.knots, self.period);
-            let out = self.transfer(&plain(x), &*derivative);
+            let mut out = self.transfer(&plain(x), &*derivative);
             (self.bent, self.knots, self.period) = bent;
+            if let Some(values) = derivative.values() {
+                out.binary = Some(values.map(|value| self.b.float(value)));
+            } else if self.shares_slopes {
+                let (sd, inverse_sd) = spread(x.variance());
+                // Tables know means, not values.
+                let part = |mean, share: f32| Gaussian {
+                    mean,
+                    variance: (sd * share).square(),
+                    sd: sd * share,
+                    inverse_sd: inverse_sd * (1.0 / share),
+                    range: x.range,
+                };
+                out.share = Some(of_function(x.flat_mean(), sd, |at, share| {
+                    let part = part(at, share);
+                    let m = derivative.moments(&part);
+                    m.mean.square() + m.slope.square() * part.variance + m.distortion
+                }));
+            }
             return out;
         }
+        self.jumped |= t.is_steep();
         let variance = x.variance();
         let (sd, inverse_sd) = spread(variance);
         let m = t.moments(&Gaussian {

@@ -68,6 +68,10 @@ pub trait Transfer<'b> {
     fn binary(&self) -> Option<[f32; 2]> {
         None
     }
+    /// The two values of a function that takes no others at any number of places.
+    fn values(&self) -> Option<[f32; 2]> {
+        self.binary()
+    }
     /// Whether the value may jump, or rise without bound: what does not spread has one value, while a
     /// Gaussian of next to no width has both sides.
     fn is_steep(&self) -> bool {

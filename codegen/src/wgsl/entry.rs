@@ -286,6 +286,7 @@ pub(super) fn entry_text(program: &Program, names: &Names, face: &Face) -> Entry
     results.push((")".to_owned(), None));
     EntryText {
         signature,
+        arguments: Vec::new(),
         parameters,
         results,
     }

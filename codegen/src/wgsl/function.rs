@@ -87,6 +87,8 @@ pub(super) struct Context<'a> {
 pub(super) struct EntryText {
     /// The parameters and the result: `footprint: Footprint) -> MarbleOutputs`.
     pub(super) signature: String,
+    /// The names of arguments that no local may have, beside those of a texture's function.
+    pub(super) arguments: Vec<&'static str>,
     /// How each parameter of the IR function is spelled.
     pub(super) parameters: Vec<String>,
     /// The result: text, and the first result after it.
@@ -148,7 +150,11 @@ pub(super) fn write(
     let function = module.function(id);
     let size = function.insts.len();
     let mut scope = Scope::default();
-    for taken in ["i", "args", "footprint", "parameters"] {
+    let arguments = entry.map_or(&[][..], |entry| &entry.arguments);
+    for &taken in ["i", "args", "footprint", "parameters"]
+        .iter()
+        .chain(arguments)
+    {
         scope.take(taken.to_owned());
     }
     let mut writer = Writer {

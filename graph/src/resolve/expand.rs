@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::connect::{Bound, Place, check_range, conversion, convert, origin};
 use super::template::{Kind, Template, Wire, position_u32};
-use super::{Context, literal, range};
+use super::{Context, literal, material, range};
 use crate::diagnostic::escape;
 use crate::document::{Document, InputEntry};
 use crate::{
@@ -49,6 +49,7 @@ pub(super) fn expand(
         parameters: Vec::new(),
         nodes: Vec::new(),
         outputs: Vec::new(),
+        materials: Vec::new(),
         images: Images::default(),
     };
     let mut inputs = Vec::with_capacity(document.body.inputs.len());
@@ -109,10 +110,10 @@ pub(super) fn expand(
             }
         }
     };
-    for ((name, _), output) in document.body.outputs.iter().zip(outputs) {
+    for (name, output) in templates[0].output_names.iter().zip(outputs) {
         if let Some((node, ty)) = output {
             graph.outputs.push(Output {
-                name: name.clone(),
+                name: (*name).to_owned(),
                 node,
                 ty,
             });
@@ -422,6 +423,12 @@ fn node(
     if !sound {
         return None;
     }
+    let mut name = path.clone();
+    if let (Some(choice), Some((position, names))) = (output.checked_sub(1), spec.selector()) {
+        let choice = names[choice as usize];
+        name = format!("{name}.{choice}");
+        inputs[position].source = Source::Literal(Literal::Text(choice.to_owned()));
+    }
     let ty = match spec.output {
         OutputType::Exactly(ty) => ty,
         OutputType::Widest | OutputType::Whole => common,
@@ -433,23 +440,30 @@ fn node(
         OutputType::Stops => stops,
         OutputType::Picture { file, .. } if text(spec, &inputs, file).is_empty() => stops,
         OutputType::Picture { named: port, .. } => named(spec, &inputs, port),
+        OutputType::Material { .. } => Type::Float,
     };
-    let mut name = path;
-    if let (Some(choice), Some((position, names))) = (output.checked_sub(1), spec.selector()) {
-        let choice = names[choice as usize];
-        name = format!("{name}.{choice}");
-        inputs[position].source = Source::Literal(Literal::Text(choice.to_owned()));
-    }
     let pointer = template.node_pointer(index);
     let id = NodeId(position_u32(graph.nodes.len()));
-    graph.nodes.push(Node {
+    let mut node = Node {
         name,
         pointer,
         definition,
         spec,
         ty,
         inputs,
-    });
+    };
+    if spec.material().is_some() {
+        if graph.materials.iter().all(|known| known.name != path) {
+            let name = path.clone();
+            graph.materials.push(Node {
+                name,
+                ..node.clone()
+            });
+        }
+        node = material::part(node);
+    }
+    let ty = node.ty;
+    graph.nodes.push(node);
     Some((id, ty))
 }
 

@@ -4,7 +4,7 @@
 use rustc_hash::FxHashMap;
 use serde_json::Value;
 
-use super::Context;
+use super::{Context, material};
 use crate::diagnostic::escape;
 use crate::document::{Binding, Body, Document, NodeEntry, Reference};
 use crate::{Diagnostic, Type};
@@ -19,8 +19,11 @@ pub(super) struct Template<'d> {
     /// The types of the inputs; `None` where they are wrong, which is reported.
     pub(super) inputs: Vec<Option<Type>>,
     pub(super) nodes: Vec<TemplateNode<'d>>,
-    /// The outputs of the body; `None` where they are wrong, which is reported.
+    /// The outputs of the body; `None` where they are wrong, which is reported. Of a sub-graph they
+    /// are those that it names; of the graph, a material is each of its parts.
     pub(super) outputs: Vec<Option<Port>>,
+    /// Their names.
+    pub(super) output_names: Vec<&'d str>,
     /// The nodes in topological order; filled by `order`.
     pub(super) order: Vec<u32>,
 }
@@ -122,6 +125,7 @@ fn template<'d>(
         inputs,
         nodes: Vec::with_capacity(body.nodes.len()),
         outputs: Vec::with_capacity(body.outputs.len()),
+        output_names: Vec::with_capacity(body.outputs.len()),
         order: Vec::new(),
     };
     // The kinds first: a wire looks at the kind of the node that it comes from.
@@ -143,7 +147,19 @@ fn template<'d>(
         let at = format!("{}/outputs/{}", template.pointer, escape(name));
         let place = Diagnostic::error("", "").at(at);
         let port = self::reference(context, document, &template, reference, &place);
-        template.outputs.push(port);
+        let parts = port.and_then(|port| material::parts(context, &template, port, name, &place));
+        match parts {
+            Some(parts) => {
+                for (name, port) in parts {
+                    template.output_names.push(name);
+                    template.outputs.push(Some(port));
+                }
+            }
+            None => {
+                template.output_names.push(name);
+                template.outputs.push(port);
+            }
+        }
     }
     select(context, &mut template);
     if body.outputs.is_empty() {
@@ -266,6 +282,7 @@ fn wires<'d>(
             Binding::Node(reference) => {
                 let place = place("", String::new());
                 self::reference(context, document, template, reference, &place)
+                    .filter(|port| !material::is_read(context, template, *port, &place))
                     .map_or(Wire::Broken, Wire::Node)
             }
             Binding::Input(name) => match template.body.inputs.get_index_of(name) {

@@ -2,7 +2,7 @@
 
 use crate::port;
 use crate::port::{any, number};
-use mipless_codegen::ir::{Sym2, Vec2};
+use mipless_codegen::ir::{Float, Sym2, Vec2};
 use mipless_codegen::moments::{Mode, Signal};
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range};
@@ -48,7 +48,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 "# },
 };
 
-fn class(inputs: &dyn InputView) -> Behaviour {
+pub(super) fn class(inputs: &dyn InputView) -> Behaviour {
     if inputs.in_space("in") {
         return Behaviour::Refused {
             port: "in",
@@ -62,8 +62,22 @@ fn class(inputs: &dyn InputView) -> Behaviour {
 const LEAST: f32 = 1e-10;
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let variance = variance(lower, node);
+    blurred(lower, node, variance)
+}
+
+/// The variance of the blur along each axis.
+pub(super) fn variance<'b>(lower: &Lower<'_, 'b>, node: &Node) -> Float<'b> {
+    lower.number(node, "size").square() * (1.0 / 12.0) + LEAST
+}
+
+/// `in` under a round Gaussian of this variance.
+pub(super) fn blurred<'b>(
+    lower: &mut Lower<'_, 'b>,
+    node: &Node,
+    variance: Float<'b>,
+) -> Bundle<'b> {
     let mode = lower.mode();
-    let variance = lower.number(node, "size").square() * (1.0 / 12.0) + LEAST;
     let over = lower.widened(variance);
     let inputs = lower.bundle(node, "in");
     // At a point too: the same closure then gives the same mean at every footprint.

@@ -11,12 +11,19 @@ const RESOLUTION: f32 = 1e-5;
 /// Slopes beyond this are those of jumps, and vertical.
 const STEEPEST: f32 = 1e9;
 
-/// ∂in/∂u and ∂in/∂v, with (u, v) the node's texcoord; what the footprint removed of them are symbols that
+/// ∂/∂u and ∂/∂v of an input, with (u, v) the node's texcoord; what the footprint removed of them are symbols that
 /// both carry.
-pub(super) fn gradient<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> [Signal<'b>; 2] {
+pub(super) fn gradient<'b>(lower: &mut Lower<'_, 'b>, node: &Node, port: &str) -> [Signal<'b>; 2] {
+    let sources = (&node.input(port).source, &node.input("texcoord").source);
+    let key = format!("gradient {sources:?}");
+    let slopes = lower.jointly(&key, |lower| computed(lower, node, port).to_vec());
+    slopes.try_into().expect("two slopes")
+}
+
+fn computed<'b>(lower: &mut Lower<'_, 'b>, node: &Node, port: &str) -> [Signal<'b>; 2] {
     let spreads = lower.mode().spreads();
     let over = lower.widened(lower.b().float(RESOLUTION * RESOLUTION));
-    let height = lower.slopes(node, "in", &over, spreads)[0];
+    let height = lower.slopes(node, port, &over, spreads)[0];
     let texcoord = lower.slopes(node, "texcoord", &over, false);
     let frame = Frame::new([texcoord[0].mean, texcoord[1].mean]);
     let mut slopes = frame.0.map(|row| {
@@ -26,6 +33,7 @@ pub(super) fn gradient<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> [Signal<'b
     if spreads {
         for (slope, row) in slopes.iter_mut().zip(frame.0) {
             slope.g = response(row, &height, &over);
+            slope.share = Some(height.share);
         }
         let rest = frame.turned(height.rest);
         lower.algebra.attach_joint(&mut slopes, &*rest);
@@ -72,9 +80,39 @@ pub(super) fn normals<'b>(lower: &mut Lower<'_, 'b>, tilts: &[Signal<'b>; 2]) ->
     })
 }
 
-/// The class of what reads a gradient.
+/// The normal of length 1, in tangent space, of a surface with these slopes.
+pub(super) fn upright<'b>(lower: &mut Lower<'_, 'b>, slopes: &[Signal<'b>; 2]) -> Bundle<'b> {
+    let ranges = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
+    lower.algebra.fine_cubature(slopes, &ranges, |slope| {
+        let [x, y] = [slope[0], slope[1]];
+        let up = 1.0 / (x * x + y * y + 1.0).sqrt();
+        vec![-x * up, -y * up, up]
+    })
+}
+
+/// Normals that lean more are taken for such that do not.
+const LEANING: f32 = 50.0;
+
+/// The slopes that a normal in tangent space means, −n_xy/n_z.
+pub(super) fn of_normal<'b>(lower: &mut Lower<'_, 'b>, normal: &[Signal<'b>]) -> [Signal<'b>; 2] {
+    let ranges = [[-LEANING, LEANING]; 2];
+    let slopes = lower.algebra.cubature(normal, &ranges, |n| {
+        let up = n[2].max(1e-6);
+        [n[0], n[1]]
+            .map(|across| (-across / up).clamp(-LEANING, LEANING))
+            .to_vec()
+    });
+    slopes.try_into().expect("two slopes")
+}
+
+/// The class of what reads the gradient of `in`.
 pub(super) fn class(inputs: &dyn InputView) -> Behaviour {
-    for port in ["in", "texcoord"] {
+    class_of(inputs, "in")
+}
+
+/// The class of what reads the gradient of an input.
+pub(super) fn class_of(inputs: &dyn InputView, height: &'static str) -> Behaviour {
+    for port in [height, "texcoord"] {
         if inputs.in_space(port) {
             return Behaviour::Refused {
                 port,

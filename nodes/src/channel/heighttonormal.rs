@@ -45,7 +45,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
         port::surface("The coordinates that the normal's axes follow."),
     ],
     output: OutputType::Exactly(Type::Vector3),
-    reach: |_| Reach::of(-1.0, 1.0),
+    reach: |_| Reach::of(0.0, 1.0),
     class,
     example: example! { "heighttonormal", r#"
     "hills": { "type": "fractal2d", "inputs": { "frequency": 5 } },
@@ -55,6 +55,6 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let scale = lower.number(node, "scale") * (-1.0 / 16.0);
-    let tilts = gradient(lower, node).map(|slope| slope * scale);
+    let tilts = gradient(lower, node, "in").map(|slope| slope * scale);
     normals(lower, &tilts)
 }

@@ -56,5 +56,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let scale = lower.number(node, "scale");
-    gradient(lower, node).map(|slope| slope * scale).to_vec()
+    gradient(lower, node, "in")
+        .map(|slope| slope * scale)
+        .to_vec()
 }

@@ -18,7 +18,7 @@ const ARCTANGENT: [f64; 9] = [
 ];
 
 /// The angle of (x, y) in turns of [0, 1); 0 at the origin.
-fn turns_of<'b>(x: Float<'b>, y: Float<'b>) -> Float<'b> {
+pub(crate) fn turns_of<'b>(x: Float<'b>, y: Float<'b>) -> Float<'b> {
     let (wide, high) = (x.abs(), y.abs());
     let t = wide.min(high) / wide.max(high).max(1e-30);
     let square = t.square();

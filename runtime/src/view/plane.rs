@@ -35,6 +35,12 @@ struct Ray {
     right_per_column: f64,
 }
 
+impl Ray {
+    fn length(&self) -> f64 {
+        (self.right.powi(2) + self.down.powi(2) + self.forward.powi(2)).sqrt()
+    }
+}
+
 impl Plane {
     fn ray(&self, size: Size, [x, y]: [f64; 2]) -> Ray {
         let (width, height) = (f64::from(size.width), f64::from(size.height));
@@ -75,18 +81,23 @@ impl Plane {
             dy: [dv[0], 0.0, dv[1]],
             shade: 1.0,
             coverage: 1.0,
+            frame: [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],
+            eye: [-ray.right, ray.down, ray.forward].map(|x| x / ray.length()),
         })
     }
 
     /// A clear sky: pale at the horizon, deeper blue above.
     pub(super) fn sky(&self, size: Size, point: [f64; 2]) -> [f64; 3] {
         let ray = self.ray(size, point);
-        let length = (ray.right.powi(2) + ray.down.powi(2) + ray.forward.powi(2)).sqrt();
-        let elevation = (-ray.down / length).clamp(0.0, 1.0);
-        let share = (elevation * 2.5).min(1.0).sqrt();
-        let (pale, deep) = ([0.70, 0.78, 0.86], [0.16, 0.32, 0.60]);
-        std::array::from_fn(|c| pale[c] + share * (deep[c] - pale[c]))
+        clear_sky(-ray.down / ray.length())
     }
+}
+
+/// The radiance of a clear sky at this sine of the elevation: pale at the horizon, deeper blue above.
+pub(crate) fn clear_sky(sine: f64) -> [f64; 3] {
+    let share = (sine.clamp(0.0, 1.0) * 2.5).min(1.0).sqrt();
+    let (pale, deep) = ([0.70, 0.78, 0.86], [0.16, 0.32, 0.60]);
+    std::array::from_fn(|c| pale[c] + share * (deep[c] - pale[c]))
 }
 
 #[cfg(test)]

@@ -94,6 +94,8 @@ impl Sphere {
         let latitude = p.y.atan2(ring.sqrt());
         let light = DVec3::from_array(self.light).normalize_or(DVec3::Z);
         let cosine = point.dot(light).max(0.0);
+        let along = to_object.transpose() * DVec3::new(p.z, 0.0, -p.x);
+        let along = along.normalize_or(DVec3::X);
         Some(Hit {
             uv: [p.x.atan2(p.z) * scale, -latitude * scale],
             du: change(right),
@@ -103,6 +105,8 @@ impl Sphere {
             dy: down.to_array().map(|c| c.clamp(-STEEPEST, STEEPEST)),
             shade: self.ambient + (1.0 - self.ambient) * cosine,
             coverage,
+            frame: [along, along.cross(point), point].map(|axis| axis.to_array()),
+            eye: (eye - point).normalize_or(DVec3::Z).to_array(),
         })
     }
 

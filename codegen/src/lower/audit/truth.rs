@@ -77,7 +77,8 @@ pub(super) fn components(graph: &Graph) -> Vec<Range<usize>> {
         .map(|output| {
             let start = end;
             end += output.ty.components();
-            start..end
+            let is_mean = graph.node(output.node).is_mean();
+            start..if is_mean { end } else { start }
         })
         .collect()
 }
@@ -88,6 +89,7 @@ pub(super) struct Truth<'p> {
     /// The variance of points within a footprint.
     variance: Vec<Vec<f32>>,
     pub(super) point: Vec<Vec<f32>>,
+    /// The components of each output; none of what is no mean of points.
     outputs: Vec<Range<usize>>,
     /// How many points there are in a pixel.
     samples: u32,
