@@ -164,7 +164,7 @@ impl<'b> Signal<'b> {
     }
 
     /// Σ c²: the variance of shared symbols.
-    pub(super) fn shared_variance(&self) -> Float<'b> {
+    pub fn shared_variance(&self) -> Float<'b> {
         let squares = self.shared.iter().map(|(_, c)| c.square());
         self.mean.builder().sum(squares)
     }

@@ -83,10 +83,12 @@ pub(super) fn blurred<'b>(
     // At a point too: the same closure then gives the same mean at every footprint.
     let blurred = lower.upstream(node, "in", &over, true);
     let own = (lower.b()).sum(over.own.into_iter().flatten().map(|x| x.square()));
-    let share = own / (own + variance * 2.0);
+    let both = own + variance * 2.0;
+    let share = own / both;
     // Of one wavelength, order n has the Poisson weight qⁿe^{−q}/n!, q = (2πs/λ)²: Σ ρⁿ of them is
     // e^{−q(1 − ρ)}.
-    let exponent = blurred.wavelengths.square() * (share + -1.0) * std::f32::consts::TAU.powi(2);
+    let turns = blurred.wavelengths.square() * std::f32::consts::TAU.powi(2);
+    let exponent = turns.min(1e30) * (variance * -2.0 / both);
     let kept = (share.square() * share).min(exponent.clamp(-80.0, 0.0).exp());
     // δ′ = L⁻¹A δ.
     let [top, bottom] = over.ratio;

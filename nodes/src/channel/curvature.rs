@@ -3,6 +3,8 @@
 use super::blur::{blurred, class, variance};
 use crate::port;
 use crate::port::number;
+use mipless_codegen::ir::{Sym2, Vec2};
+use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
 use mipless_graph::{Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
@@ -25,8 +27,8 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             evaluated once more, over a larger footprint.",
         statistics: "The difference of the signal and of the same signal over a footprint convolved with the \
             Gaussian: its mean is as exact as the filter of the height, and of its variation within the \
-            pixel the parts of both that the place moves are subtracted; the rest of the blurred \
-            signal (see `blur`) counts as independent.",
+            pixel the parts of both that the place moves are subtracted; of the rest, that of the blurred \
+            signal (see `blur`) is taken for a share of the height's, as it is for one wavelength.",
         accuracy: "As `blur`, divided by r²: so is the rounding of the height, about 1e-6 of it. Held by `nodes/tests/surface.rs` against dense sums.",
         references: "Marr & Hildreth 1980, *Theory of Edge Detection* (differences of Gaussians). Heckbert \
             1989, *Fundamentals of Texture Mapping and Image Warping*, §3.5.8.",
@@ -58,5 +60,20 @@ pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let by = lower.number(node, "scale") / variance;
     let height = lower.signal(node, "in").flat();
     let mean = blurred(lower, node, variance).remove(0);
-    vec![(&height - &mean) * by]
+    let response = |signal: &Signal<'b>| Signal {
+        g: signal.g,
+        h: signal.h,
+        ..Signal::certain(signal.mean)
+    };
+    // What the footprint has removed of both is one wave, of which the blur leaves a share.
+    let [own, left] = [&height, &mean].map(|signal| signal.private + signal.shared_variance());
+    let share = (left / own.max(1e-30)).min(1.0).sqrt();
+    let removed = Signal {
+        g: Vec2::splat(own.literal(0.0)),
+        h: Sym2::splat(own.literal(0.0)),
+        mean: own.literal(0.0),
+        ..height.clone()
+    };
+    let bent = &response(&height) - &response(&mean);
+    vec![(bent + removed * (1.0 - share)) * by]
 }
