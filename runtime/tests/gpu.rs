@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use libtest_mimic::{Arguments, Trial};
 use mipless_codegen::ir::{Builder, FOOTPRINT, Interface, Module, Port, Program, dot};
-use mipless_codegen::wgsl::{Entry, Options, emit};
+use mipless_codegen::wgsl::{Entry, emit};
 use mipless_runtime::cpu::Renderer;
 use mipless_runtime::gpu::{AdapterChoice, Gpu, GpuError};
 use mipless_runtime::job::Job;
@@ -116,12 +116,7 @@ fn a_device_agrees_with_the_cpu(gpu: &Gpu) {
 }
 
 fn a_bad_shader_is_an_error(gpu: &Gpu) {
-    let good = emit(
-        &program(),
-        &Options {
-            entry: Entry::Compute,
-        },
-    );
+    let good = emit(&program(), &Entry::Compute.into());
     let broken = [
         ("fn ", "this is not WGSL "),
         ("id.x + id.y", "id.x + 1.5f"),

@@ -186,9 +186,9 @@ fn report(outcomes: Vec<Outcome>) {
             worse.count()
         );
     }
-    let orders: [(&str, &dyn Fn(&Row) -> f64); 2] = [
-        ("worse than a point", &|row| row.errors.excess()),
-        ("the largest errors", &|row| row.errors.auto),
+    let orders: [(&str, fn(&Row) -> f64); 2] = [
+        ("worse than a point", |row| row.errors.excess()),
+        ("the largest errors", |row| row.errors.auto),
     ];
     for (title, of) in orders {
         rows.sort_by(|a, b| of(b).total_cmp(&of(a)));

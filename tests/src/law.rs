@@ -6,7 +6,7 @@ use crate::shown::wavelength;
 use crate::timing::defaults;
 use crate::tolerance::{FAR_FIELD, LEFT_OUT, RANGE, ROUNDING, SPREAD, VANISHING};
 use mipless::target::{Target, validate};
-use mipless::wgsl::{Entry, Options as Emission, emit};
+use mipless::wgsl::{Entry, emit};
 use mipless::{Footprint, Literal, Method, Options, Program, Texture};
 use mipless_codegen::cpu::eval_program;
 use mipless_codegen::ir::verify;

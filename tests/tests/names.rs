@@ -2,7 +2,7 @@
 //! and names that other programs have for ports and nodes are answered.
 
 use mipless::target::{Target, validate};
-use mipless::wgsl::{Entry, Options as Emission, Shader, emit};
+use mipless::wgsl::{Entry, Shader, emit};
 use mipless::{CheckOptions, Method, NoFiles, Options, Texture};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;

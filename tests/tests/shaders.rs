@@ -6,7 +6,7 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use mipless::target::{Target, TranslateError, translate, validate};
-use mipless::wgsl::{Entry, Options as Emission, Stage, emit};
+use mipless::wgsl::{Entry, Stage, emit};
 use mipless::{Method, Options};
 use mipless_tests::case::{Case, all, random};
 use mipless_tests::random_graph::{asked as asked_graphs, methods};

@@ -9,7 +9,7 @@ mod color;
 mod sky;
 
 use mipless::target::{Target, translate};
-use mipless::wgsl::{Entry, Options as Emission, emit_shaded};
+use mipless::wgsl::{Entry, emit_shaded};
 use mipless::{CheckOptions, Options, Texture};
 use mipless_codegen::shade::{FIELDS, Hiding, Lighting, terms_module};
 use mipless_tests::random::Random;
@@ -401,7 +401,7 @@ fn functions_that_shade_are_valid_for_every_target() {
     let material = material.expect("a material").expect("without mistakes");
     let program = material.compile(&Options::default());
     for entry in [Entry::None, Entry::Fragment, Entry::Compute] {
-        let shader = emit_shaded(&program, &Emission { entry });
+        let shader = emit_shaded(&program, &entry.into());
         for line in [
             "fn light_shade(surface: LightOutputs, view: vec3f, light: vec3f, light_color: vec3f) -> vec3f",
             "fn light_shade_sky(surface: LightOutputs, view: vec3f, sky: array<vec3f, 9>) -> vec3f",

@@ -4,7 +4,7 @@
 //! After a change that is meant, look at `git diff tests/tests/snapshots` of
 //! `INSTA_UPDATE=always cargo test -p mipless-tests --test snapshots`, and commit it.
 
-use mipless::wgsl::{Entry, Options as Emission, emit};
+use mipless::wgsl::{Entry, emit};
 use mipless::{Method, Options, Program, Texture};
 use mipless_codegen::ir::{Module, verify};
 use mipless_tests::case::{Case, all, graphs, materials};

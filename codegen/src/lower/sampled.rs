@@ -68,9 +68,13 @@ impl<'g, 'b> Lower<'g, 'b> {
         let lost = sampling.drawn.lost(band);
         let turn = self.arguments.footprint.hashed(0x51ed_270b);
         let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
-        let table = ("sampled_places", places as fn() -> Vec<f32>);
         let arguments = self.arguments.clone();
-        let rows = (POINTS, table, turn);
+        let rows = Rows {
+            count: POINTS,
+            name: "sampled_places",
+            places,
+            first: turn,
+        };
         let points = self.points(index, (closed.len(), &arguments, None), within, rows);
         let points: Vec<Signal<'b>> = (points.into_iter().enumerate())
             .map(|(i, signal)| Signal {
@@ -114,9 +118,13 @@ impl<'g, 'b> Lower<'g, 'b> {
                 *to = is_wide.select((from / f64::from(sd)) as f32, *to);
             }
         }
-        let table = ("many_places", many_places as fn() -> Vec<f32>);
         let first = is_wide.select(MANY as u32, 0u32);
-        let rows = (MANY, table, first);
+        let rows = Rows {
+            count: MANY,
+            name: "many_places",
+            places: many_places,
+            first,
+        };
         let of = (closed.len(), &arguments, Some(periods));
         let mut points = self.points(index, of, within, rows);
         for point in &mut points {
@@ -135,7 +143,12 @@ impl<'g, 'b> Lower<'g, 'b> {
         index: usize,
         (components, arguments, periods): (usize, &Arguments<'b>, Option<Periods>),
         within: Bool<'b>,
-        (count, (name, places), first): (usize, (&str, fn() -> Vec<f32>), Uint<'b>),
+        Rows {
+            count,
+            name,
+            places,
+            first,
+        }: Rows<'b>,
     ) -> Vec<Signal<'b>> {
         let compiler = self.compiler;
         let sample = self.function(&format!("sample of {index} by {name}"), |module| {
@@ -245,6 +258,15 @@ fn closed_function(
     });
     b.results(names, parts);
     b.finish(module)
+}
+
+/// Points in a table: so many, from a row on.
+struct Rows<'b> {
+    count: usize,
+    /// The table, and what fills it.
+    name: &'static str,
+    places: fn() -> Vec<f32>,
+    first: Uint<'b>,
 }
 
 /// What is summed over the points for one component: the value at the centre, and of the values'

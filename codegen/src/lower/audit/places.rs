@@ -179,13 +179,16 @@ mod tests {
         octaves: 2,
     };
 
+    /// The components of one output, of one.
+    const ONE: Range<usize> = 0..1;
+
     /// A closed form that is off by 1 at every so manieth candidate, and right elsewhere.
     fn wrong(every: usize) -> (Places, Vec<usize>) {
         let candidates = candidates(BANDS, 16.0);
         let point = vec![0.0; candidates.len()];
         let off = |i: usize| f32::from(u8::from(i % every == 5));
         let closed = (0..candidates.len()).map(off).collect();
-        Places::of(BANDS, &candidates, [&[closed], &[point]], &[0..1])
+        Places::of(BANDS, &candidates, [&[closed], &[point]], &[ONE])
     }
 
     #[test]
@@ -217,7 +220,7 @@ mod tests {
     fn where_nothing_differs_all_places_count_alike() {
         let candidates = candidates(BANDS, 16.0);
         let same = vec![vec![0.5; candidates.len()]];
-        let (places, indices) = Places::of(BANDS, &candidates, [&same, &same], &[0..1]);
+        let (places, indices) = Places::of(BANDS, &candidates, [&same, &same], &[ONE]);
         let alike = |share: &f64| (share * PLACES as f64 - 1.0).abs() < 1e-9;
         assert!(places.shares.iter().all(alike));
         assert!(indices.windows(2).all(|pair| pair[0] < pair[1]));
