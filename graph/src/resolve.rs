@@ -11,7 +11,6 @@
 mod connect;
 mod expand;
 mod literal;
-mod material;
 mod nesting;
 mod order;
 mod range;

@@ -73,7 +73,7 @@ const WORDS: [&str; 20] = [
     "rgba",
     "seed",
 ];
-const MORE_WORDS: [&str; 4] = ["space", "sum", "transpose", "type"];
+const MORE_WORDS: [&str; 5] = ["space", "sum", "toolseed", "transpose", "type"];
 
 /// The schema of graphs lists every node with its inputs.
 #[test]

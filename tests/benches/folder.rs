@@ -186,7 +186,8 @@ fn report(outcomes: Vec<Outcome>) {
             worse.count()
         );
     }
-    let orders: [(&str, fn(&Row) -> f64); 2] = [
+    type Order = fn(&Row) -> f64;
+    let orders: [(&str, Order); 2] = [
         ("worse than a point", |row| row.errors.excess()),
         ("the largest errors", |row| row.errors.auto),
     ];

@@ -50,17 +50,22 @@ fn difference(first: &Texture, second: &Texture) -> f32 {
 }
 
 /// Nodes that MaterialX has not and that are not made of what it has.
-const REFUSED: [&str; 14] = [
+const REFUSED: [&str; 19] = [
     "blackbody",
+    "blendnormal",
     "brick",
     "byexample",
     "colormap2d",
+    "curvature",
     "gabornoise2d",
+    "heightmask",
     "multifractal2d",
+    "normaltoslope",
     "phasornoise2d",
     "ridged2d",
     "shape",
     "slope",
+    "slopemask",
     "slopetonormal",
     "spectralnoise2d",
     "valuenoise2d",

@@ -3,8 +3,8 @@
 use serde_json::Value;
 
 use super::connect::{Bound, Place, check_range, conversion, convert, origin};
-use super::template::{Kind, Template, Wire, position_u32};
-use super::{Context, literal, material, range};
+use super::template::{Kind, Template, Wire, material, position_u32};
+use super::{Context, literal, range};
 use crate::diagnostic::escape;
 use crate::document::{Document, InputEntry};
 use crate::{

@@ -1,10 +1,12 @@
 //! The bodies of a document with names turned into positions: everything that can be known of a
 //! body without knowing who uses it.
 
+pub(super) mod material;
+
 use rustc_hash::FxHashMap;
 use serde_json::Value;
 
-use super::{Context, material};
+use super::Context;
 use crate::diagnostic::escape;
 use crate::document::{Binding, Body, Document, NodeEntry, Reference};
 use crate::{Diagnostic, Type};

@@ -12,7 +12,6 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "blendnormal",
     aliases: &[
         "blend_normals",
-        "normal_blend",
         "normal_combine",
         "rnm",
         "detail_normal",

@@ -1,7 +1,7 @@
 //! Materials: nodes that end a graph, each of whose parts becomes an output.
 
-use super::template::{Kind, Port, Template, Wire, position_u32};
-use super::{Context, literal};
+use super::super::{Context, literal};
+use super::{Kind, Port, Template, Wire, position_u32};
 use crate::{Diagnostic, Graph, Literal, MaterialPart, Node, NodeId, Output, Source, Type};
 
 /// A node that gives a material, with what its template says of it.
@@ -150,7 +150,7 @@ pub(super) fn is_read(
 }
 
 /// The node of a part of a material, whose inputs are defaults where the part does not read them.
-pub(super) fn part(mut node: Node) -> Node {
+pub(in super::super) fn part(mut node: Node) -> Node {
     let Some(part) = node.part() else {
         // All of them: a node that no output reads.
         return node;
