@@ -113,18 +113,22 @@ impl<'b> Lower<'_, 'b> {
         let each = signals.iter().enumerate().map(|(i, signal)| {
             let flat = signal.flat();
             let mean = drawn.draw(i, flat.mean, lost);
-            let [low, high] = flat.range;
-            let is_bounded = low.is_finite() && high.is_finite();
             Signal {
-                mean: match drawn.far {
-                    Far::Times(_) if is_bounded => mean.clamp(low, high),
-                    _ => mean,
-                },
+                mean: bounded(mean, flat.range),
                 binary: None,
                 hermite: None,
                 ..flat
             }
         });
         Some(each.collect())
+    }
+}
+
+/// A mean within the range of what it is the mean of, where that is known.
+pub(super) fn bounded<'b>(mean: Float<'b>, [low, high]: [f32; 2]) -> Float<'b> {
+    if low.is_finite() && high.is_finite() {
+        mean.clamp(low, high)
+    } else {
+        mean
     }
 }

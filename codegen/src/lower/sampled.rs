@@ -15,7 +15,7 @@
 //! ([`super::drawn`]).
 
 use super::bands::Bands;
-use super::drawn::Drawn;
+use super::drawn::{Drawn, bounded};
 use super::period::Periods;
 use super::place::scattered;
 use super::torus;
@@ -76,9 +76,9 @@ impl<'g, 'b> Lower<'g, 'b> {
             first: turn,
         };
         let points = self.points(index, (closed.len(), &arguments, None), within, rows);
-        let points: Vec<Signal<'b>> = (points.into_iter().enumerate())
-            .map(|(i, signal)| Signal {
-                mean: sampling.drawn.draw(i, signal.mean, lost),
+        let points: Vec<Signal<'b>> = (points.into_iter().zip(closed).enumerate())
+            .map(|(i, (signal, closed))| Signal {
+                mean: bounded(sampling.drawn.draw(i, signal.mean, lost), closed.range),
                 ..signal
             })
             .collect();

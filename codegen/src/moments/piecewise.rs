@@ -67,6 +67,8 @@ pub struct Piecewise<'b> {
     pub bumps: Vec<Bump<'b>>,
     /// Whether it is constant after the last knot, whatever the rounded sum of the slopes is.
     pub level: bool,
+    /// The least and the largest value, where they are known though the places of the knots are not.
+    pub values: Option<[f32; 2]>,
 }
 
 impl<'b> Piecewise<'b> {
@@ -78,6 +80,7 @@ impl<'b> Piecewise<'b> {
             knots,
             bumps: Vec::new(),
             level: false,
+            values: None,
         }
     }
 
@@ -91,7 +94,10 @@ impl<'b> Piecewise<'b> {
 
     /// 1 where x ≥ `at`, else 0.
     pub fn step(at: Float<'b>) -> Self {
-        Self::straight(at.literal(0.0), 0.0, vec![Knot::jump(at, 1.0)])
+        Self {
+            values: Some([0.0, 1.0]),
+            ..Self::straight(at.literal(0.0), 0.0, vec![Knot::jump(at, 1.0)])
+        }
     }
 
     /// max(x, 0).
@@ -135,6 +141,14 @@ impl<'b> Piecewise<'b> {
     /// `a·T + c`.
     pub fn affine(mut self, a: impl Operand<'b, f32>, c: impl Operand<'b, f32>) -> Self {
         let a = a.within(self.offset.builder());
+        let c = c.within(self.offset.builder());
+        self.values = match (self.values, a.as_constant(), c.as_constant()) {
+            (Some(values), Some(a), Some(c)) => {
+                let [p, q] = values.map(|value| a * value + c);
+                Some([p.min(q), p.max(q)])
+            }
+            _ => None,
+        };
         self.offset = self.offset * a + c;
         self.slope *= a;
         for knot in &mut self.knots {
@@ -277,6 +291,7 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
                     knots: knots.chunks_exact(3).map(knot).collect(),
                     bumps: bumps.chunks_exact(2).map(bump).collect(),
                     level: variant & 1 == 1,
+                    values: None,
                 })
             },
         })
@@ -334,12 +349,14 @@ impl<'b> Transfer<'b> for Piecewise<'b> {
         // The extremes are at knots (either side), at the ends, and where the slope of a cubic is 0.
         let constant = Float::as_constant;
         let (Some(offset), Some(slope)) = (constant(self.offset), constant(self.slope)) else {
-            return UNBOUNDED;
+            return self.values.unwrap_or(UNBOUNDED);
         };
         let knots: Option<Vec<[f32; 3]>> = (self.knots.iter())
             .map(|k| Some([constant(k.at)?, constant(k.jump)?, constant(k.bend)?]))
             .collect();
-        let Some(knots) = knots else { return UNBOUNDED };
+        let Some(knots) = knots else {
+            return self.values.unwrap_or(UNBOUNDED);
+        };
         let value = |x: f32, jumps: bool| {
             knots
                 .iter()

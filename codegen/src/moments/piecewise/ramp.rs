@@ -66,8 +66,14 @@ impl<'b> Piecewise<'b> {
             Shape::Smooth => secants.iter().map(|s| Bump::smooth(s.rise)).collect(),
             Shape::Cubic => monotone(&secants, zero),
         };
+        let values: Option<Vec<f32>> = stops.iter().map(|(_, value)| value.as_constant()).collect();
+        let values = values.map(|values| {
+            let extreme = |pick: fn(f32, f32) -> f32| values.iter().copied().fold(values[0], pick);
+            [extreme(f32::min), extreme(f32::max)]
+        });
         Self {
             bumps,
+            values,
             ..Self::straight(offset, zero, knots.collect()).levelled()
         }
     }
