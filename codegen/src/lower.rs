@@ -31,7 +31,6 @@ mod sampled;
 mod sampling;
 mod shape;
 mod slope;
-mod steps;
 mod symbols;
 mod table;
 mod taps;

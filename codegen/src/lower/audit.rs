@@ -16,6 +16,7 @@
 //! alone, and is remembered by its shape ([`super::shape`]): an edit that changes nothing that
 //! matters costs nothing.
 
+mod display;
 mod extent;
 mod places;
 mod settings;

@@ -1,10 +1,9 @@
 //! What nodes that give things numbers are asked for: any function of the numbers.
 
-use super::steps::{self, Steps};
 use super::torus::alone;
 use super::{Arguments, Compiler, Lower, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
-use crate::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Type};
+use crate::ir::{Bool, Builder, Float, FunctionRef, Int, Module, Scalar, Scalars, Type, Uint};
 use crate::moments::{Algebra, Mode, Signal};
 use mipless_graph::{NodeId, Source};
 use std::sync::Arc;
@@ -39,15 +38,15 @@ impl<'b> Scalars<'b> for Ensemble<'b> {
 /// itself, unless something else is made of it. Or one of the whole parts of coordinates.
 #[derive(Clone, Debug)]
 pub struct Image {
-    function: Option<FunctionRef>,
+    pub(super) function: Option<FunctionRef>,
     /// Of how many whole parts it is a function, if it is one of them.
-    axes: Option<usize>,
-    channels: usize,
+    pub(super) axes: Option<usize>,
+    pub(super) channels: usize,
     /// The inputs of the graph, if it reads any.
-    parameters: Vec<Type>,
-    key: String,
+    pub(super) parameters: Vec<Type>,
+    pub(super) key: String,
     /// Means and covariance over all numbers, if no input of the graph shapes them.
-    known: Option<Arc<[Vec<f32>; 2]>>,
+    pub(super) known: Option<Arc<[Vec<f32>; 2]>>,
 }
 
 /// Pairs of channels, in the order of the lower triangle of a matrix.
@@ -108,32 +107,6 @@ impl Image {
         image
     }
 
-    /// The components of some of the nodes that are functions of whole parts.
-    pub(super) fn of_steps(lower: &mut Lower<'_, '_>, steps: &Steps, ends: &[usize]) -> Self {
-        let compiler = lower.compiler;
-        let key = format!("image of steps {:?} {ends:?}", steps.roundings);
-        if let Some(known) = compiler.images.borrow().get(&key) {
-            return known.clone();
-        }
-        let is_live = is_live(compiler, &steps.region(compiler, ends));
-        let function = steps.function(compiler, lower.module, ends, is_live);
-        let image = Self {
-            parameters: match is_live {
-                true => (lower.arguments.parameters.iter())
-                    .map(|p| p.ty())
-                    .collect(),
-                false => Vec::new(),
-            },
-            channels: function.results.len(),
-            function: Some(function),
-            axes: Some(steps.axes()),
-            key: key.clone(),
-            known: (!is_live).then(|| Arc::new(steps.sampled(compiler, ends).moments())),
-        };
-        compiler.images.borrow_mut().insert(key, image.clone());
-        image
-    }
-
     /// Names it among those of a compilation; empty for the number itself.
     pub fn key(&self) -> &str {
         &self.key
@@ -177,7 +150,7 @@ impl Image {
 }
 
 /// Whether inputs of the graph shape nodes.
-fn is_live(compiler: &Compiler<'_>, region: &[usize]) -> bool {
+pub(super) fn is_live(compiler: &Compiler<'_>, region: &[usize]) -> bool {
     region.iter().any(|&node| {
         let mut inputs = compiler.graph.nodes[node].inputs.iter();
         inputs.any(|input| matches!(input.source, Source::Parameter(_)))
@@ -252,7 +225,7 @@ fn one_more(module: &mut Module, image: &Image) -> FunctionRef {
             let number = (index.to_float() + 0.5) * (1.0 / LIVE_NUMBERS as f32);
             image.of(number, &parameters)
         }
-        Some(axes) => image.of_cell(&steps::scattered(index, axes), &parameters),
+        Some(axes) => image.of_cell(&scattered(index, axes), &parameters),
     };
     let products = pairs(channels).map(|(i, k)| values[i] * values[k]);
     let parts: Vec<Float<'_>> = values.iter().copied().chain(products).collect();
@@ -315,4 +288,14 @@ pub(super) fn moments_of(values: &[Vec<f32>]) -> [Vec<f32>; 2] {
     });
     let covariance = covariance.collect();
     [means.iter().map(|&mean| mean as f32).collect(), covariance]
+}
+
+/// The cell of a number among all: far from those of others.
+fn scattered(index: Uint<'_>, axes: usize) -> Vec<Int<'_>> {
+    (0..axes as u32)
+        .map(|axis| {
+            let word = (index * 2u32 + axis).scramble();
+            (word & 0xfff).to_int() + -0x800
+        })
+        .collect()
 }

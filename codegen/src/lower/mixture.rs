@@ -7,14 +7,16 @@
 //! functions of such a node alone, and these become the image. All of one source are summed at once,
 //! with their covariance, and its own number among them where something else reads it.
 
+pub(super) mod steps;
+
 use super::image::Image;
-use super::steps::{self, Steps};
 use super::{Arguments, Bundle, Compiler, Facts, Lower, Method, NodeDef, Options};
 use crate::ir::Module;
 use crate::moments::{Algebra, Mode, Signal, Symbol};
 use mipless_graph::{Behaviour, Graph, Node, NodeId, Source};
 use rustc_hash::FxHashMap;
 use smallvec::{SmallVec, smallvec};
+use steps::Steps;
 
 /// The most nodes of an image, which is evaluated for each thing.
 pub(super) const LONGEST: usize = 64;

@@ -83,9 +83,13 @@ impl<'g, 'b> Lower<'g, 'b> {
             })
             .collect();
         let everywhere = within.as_constant() == Some(true);
-        let closed = &match compiler.facts.live[index] == 1 && compiler.is_output(index) {
-            true if !everywhere => self.closed_elsewhere(index, closed, within),
-            _ => closed.to_vec(),
+        // Elsewhere a map of it may be read, which is no closed form.
+        let is_closed = !compiler.facts.repeated.contains_key(&index);
+        let is_last = compiler.facts.live[index] == 1 && compiler.is_output(index);
+        let closed = &if is_last && is_closed && !everywhere {
+            self.closed_elsewhere(index, closed, within)
+        } else {
+            closed.to_vec()
         };
         instead(closed, &points, within)
     }

@@ -1,6 +1,6 @@
 //! Names: identifiers that every target accepts, from arbitrary text, unique in their scope.
 
-use super::reserved::is_reserved;
+use super::reserved::{is_reserved, is_word};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::collections::hash_map::Entry;
 use std::hash::BuildHasher;
@@ -159,7 +159,7 @@ impl Scope {
         for number in next.. {
             let mut candidate = name.clone() + "_";
             push_letters(&mut candidate, number);
-            if is_reserved(&candidate) {
+            if is_word(&candidate) {
                 continue;
             }
             if let Entry::Vacant(place) = self.taken.entry(hashed(&candidate)) {
@@ -232,5 +232,9 @@ mod tests {
             .map(|n| scope.take(n.to_owned()))
             .into();
         assert_eq!(given, ["a", "a_b", "a_c", "a_d", "a_b_b"]);
+        let hostile = ["gl_Position_value"; 2].map(|n| scope.take(n.to_owned()));
+        assert_eq!(hostile, ["gl_Position_value", "gl_Position_value_b"]);
+        let times: Vec<String> = (0..20).map(|_| scope.take("size".to_owned())).collect();
+        assert!(!times.iter().any(|name| name == "size_t"), "{times:?}");
     }
 }

@@ -94,11 +94,14 @@ static WORDS: LazyLock<FxHashSet<&'static str>> = LazyLock::new(|| {
 
 /// Whether a target language takes this word for itself.
 pub(super) fn is_reserved(word: &str) -> bool {
-    if WORDS.contains(word) || word.starts_with("gl_") {
-        return true;
-    }
-    word.bytes().any(|b| b.is_ascii_uppercase())
-        && WORDS.contains(word.to_ascii_lowercase().as_str())
+    is_word(word) || word.starts_with("gl_")
+}
+
+/// Whether it is one of the words; not of those that GLSL takes by how they begin.
+pub(super) fn is_word(word: &str) -> bool {
+    WORDS.contains(word)
+        || word.bytes().any(|b| b.is_ascii_uppercase())
+            && WORDS.contains(word.to_ascii_lowercase().as_str())
 }
 
 #[cfg(all(test, feature = "targets"))]

@@ -2,8 +2,9 @@
 
 use super::super::bands::Bands;
 use super::super::place::scattered;
+use super::display::displayed;
 use super::places::ASKEW;
-use super::truth::{displayed, measured};
+use super::truth::measured;
 use crate::cpu::Footprint;
 use crate::ir::Program;
 

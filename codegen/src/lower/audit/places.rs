@@ -13,7 +13,7 @@
 
 use super::super::bands::Bands;
 use super::super::place::scattered;
-use super::truth::displayed;
+use super::display::displayed;
 use crate::cpu::Footprint;
 use std::ops::Range;
 

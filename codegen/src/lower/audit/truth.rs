@@ -4,6 +4,7 @@ use super::super::bands::Bands;
 use super::super::drawn::{Drawn, Far};
 use super::super::sampled::{POINTS, Sampling};
 use super::super::{Facts, Method, NodeDef, Options, program};
+use super::display::displayed;
 use super::places::{LARGEST, PLACES, Places};
 use crate::cpu::{Evaluator, Footprint, Scratch};
 use crate::ir::Program;
@@ -316,19 +317,4 @@ fn stepped(share: f64) -> f32 {
 fn mean_of_largest(values: &[f32]) -> f64 {
     let largest = &values[values.len().saturating_sub(LARGEST)..];
     largest.iter().map(|&x| f64::from(x)).sum::<f64>() / largest.len() as f64
-}
-
-/// A number as a display shows it, to both sides of 0: normals and heights are numbers too.
-pub(super) fn displayed(x: f32) -> f64 {
-    let size = f64::from(x.abs().min(1.0));
-    let encoded = if size <= 0.003_130_8 {
-        12.92 * size
-    } else {
-        1.055 * size.powf(1.0 / 2.4) - 0.055
-    };
-    if x.is_finite() {
-        encoded.copysign(f64::from(x))
-    } else {
-        2.0
-    }
 }

@@ -5,20 +5,20 @@
 //! condition has nothing to do with that of the step beside it: no moments of the whole part fit what
 //! follows. So nodes that are functions of the same whole parts, of one coordinate or of two, are
 //! evaluated for each step in the footprint and summed with what of the Gaussian lies in it. Which
-//! nodes take whole parts their definitions say ([`super::NodeDef::steps`]), and who sums.
+//! nodes take whole parts their definitions say ([`super::super::NodeDef::steps`]), and who sums.
 //!
 //! Footprints over more steps than are summed fade to the mean over all. So it is done where the
 //! function is alike everywhere: what is left of it under the narrowest footprint that fades is no
 //! more than of independent numbers, which is found by trying. Of a ramp of steps, or of a pattern
 //! that repeats after many, the nodes are closed one by one, or read from a map.
 
-use super::image::{self, Image};
-use super::mixture::{COMPONENTS, LONGEST, Mixed, Origin};
-use super::shape::{Shape, shape};
-use super::torus::alone;
-use super::{Arguments, Bundle, Compiler, Lower, SumOfSteps, value_results};
+use super::super::image::{self, Image, is_live};
+use super::super::shape::{Shape, shape};
+use super::super::torus::alone;
+use super::super::{Arguments, Bundle, Compiler, Lower, SumOfSteps, value_results};
+use super::{COMPONENTS, LONGEST, Mixed, Origin};
 use crate::cpu::{Evaluator, Input, Scratch};
-use crate::ir::{FunctionRef, Int, Module, Uint, Value};
+use crate::ir::{FunctionRef, Int, Module, Value};
 use crate::moments::{Algebra, Mode, Signal, Symbol, Wholes};
 use mipless_graph::{NodeId, Source};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -90,7 +90,7 @@ pub(super) fn found(
 
 /// Nodes that are functions of the same whole parts.
 #[derive(Clone, Debug)]
-pub(super) struct Steps {
+pub(in super::super) struct Steps {
     /// The nodes that take the whole parts, in their order.
     pub(super) roundings: Vec<usize>,
     /// The functions of them.
@@ -159,7 +159,7 @@ impl Steps {
 
     /// The nodes from those that take whole parts to the ends.
     pub(super) fn region(&self, compiler: &Compiler<'_>, ends: &[usize]) -> Vec<usize> {
-        super::fusion::regions(compiler, ends, &self.entries)
+        super::super::fusion::regions(compiler, ends, &self.entries)
     }
 
     /// Ends as functions of the whole parts of the coordinates.
@@ -182,7 +182,7 @@ impl Steps {
         is_live: bool,
     ) -> (FunctionRef, bool) {
         let graph = compiler.graph;
-        let name = super::identifier(&graph.nodes[ends[0]].name);
+        let name = super::super::identifier(&graph.nodes[ends[0]].name);
         let b = &compiler.builder(format!("{name}_image"), "Functions of whole parts.");
         let cell: Vec<Int<'_>> = (0..self.axes())
             .map(|axis| b.int_param(format!("whole_{axis}")))
@@ -338,14 +338,32 @@ fn axes(
         .then(|| (axes, celled.collect()))
 }
 
-/// The cell of a number among all: far from those of others.
-pub(super) fn scattered(index: Uint<'_>, axes: usize) -> Vec<Int<'_>> {
-    (0..axes as u32)
-        .map(|axis| {
-            let word = (index * 2u32 + axis).scramble();
-            (word & 0xfff).to_int() + -0x800
-        })
-        .collect()
+impl Image {
+    /// The components of some of the nodes that are functions of whole parts.
+    fn of_steps(lower: &mut Lower<'_, '_>, steps: &Steps, ends: &[usize]) -> Self {
+        let compiler = lower.compiler;
+        let key = format!("image of steps {:?} {ends:?}", steps.roundings);
+        if let Some(known) = compiler.images.borrow().get(&key) {
+            return known.clone();
+        }
+        let is_live = is_live(compiler, &steps.region(compiler, ends));
+        let function = steps.function(compiler, lower.module, ends, is_live);
+        let image = Self {
+            parameters: match is_live {
+                true => (lower.arguments.parameters.iter())
+                    .map(|p| p.ty())
+                    .collect(),
+                false => Vec::new(),
+            },
+            channels: function.results.len(),
+            function: Some(function),
+            axes: Some(steps.axes()),
+            key: key.clone(),
+            known: (!is_live).then(|| Arc::new(steps.sampled(compiler, ends).moments())),
+        };
+        compiler.images.borrow_mut().insert(key, image.clone());
+        image
+    }
 }
 
 /// A function of cells at many of them.
@@ -373,7 +391,8 @@ impl Sampled {
         let stretch = STRETCH[axes - 1];
         let mut cells = vec![Vec::new(); axes];
         for number in 0..STRETCHES[axes - 1] {
-            let from = super::place::scattered(number).map(|x| ((2.0 * x - 1.0) * EXTENT) as i32);
+            let from =
+                super::super::place::scattered(number).map(|x| ((2.0 * x - 1.0) * EXTENT) as i32);
             for i in 0..stretch.pow(axes as u32) {
                 for (axis, cells) in cells.iter_mut().enumerate() {
                     let along = i / stretch.pow(axis as u32) % stretch;
@@ -476,7 +495,11 @@ impl Sampled {
 
 impl<'b> Lower<'_, 'b> {
     /// A node that is a function of whole parts, summed over the steps with the others of them.
-    pub(super) fn stepped(&mut self, index: usize, uses: &[u32]) -> Option<(Bundle<'b>, Symbol)> {
+    pub(in super::super) fn stepped(
+        &mut self,
+        index: usize,
+        uses: &[u32],
+    ) -> Option<(Bundle<'b>, Symbol)> {
         let compiler = self.compiler;
         let steps = compiler
             .facts
