@@ -10,6 +10,7 @@
 
 use mipless::{Footprint, Method, Texture};
 use mipless_tests::case::load;
+use mipless_tests::case::means;
 use mipless_tests::random::Random;
 use mipless_tests::root;
 use mipless_tests::shown::{evaluate, mean, rms, shown, truths, wavelength};
@@ -92,6 +93,7 @@ fn measured(path: &Path) -> Option<Vec<Row>> {
     let texture = Texture::from_file(path)
         .or_else(|_| load(&fs::read_to_string(path).expect("a graph")))
         .unwrap_or_else(|mistakes| panic!("{}: {mistakes:?}", path.display()));
+    let texture = means(&texture);
     let wavelength = wavelength(&texture)?;
     let of = |ratio| {
         let band = pixels(&BAND, wavelength, ratio);

@@ -182,3 +182,14 @@ pub fn all() -> Vec<Case> {
         .chain(further())
         .collect()
 }
+
+/// The texture without the outputs that are no means of points: a roughness or a normal of a material
+/// has no truth among points.
+pub fn means(texture: &Texture) -> Texture {
+    let graph = texture.checked().graph();
+    let means: Vec<&str> = (graph.outputs.iter())
+        .filter(|output| graph.node(output.node).is_mean())
+        .map(|output| output.name.as_str())
+        .collect();
+    texture.with_outputs(&means)
+}

@@ -5,6 +5,7 @@
 //! takes more pixels and more samples.
 
 use mipless::{Footprint, Method, Options, Texture};
+use mipless_tests::case::means;
 use mipless_tests::{asked, root, tolerance};
 
 /// The sizes of a pixel, in wavelengths.
@@ -80,13 +81,7 @@ fn graphs_are_as_wrong_as_predicted() {
             .to_string_lossy()
             .into_owned();
         let texture = Texture::from_file(&path).unwrap_or_else(|e| panic!("{name}: {e:?}"));
-        // What is no mean of points (a roughness, a normal) has no truth among points.
-        let graph = texture.checked().graph();
-        let means: Vec<&str> = (graph.outputs.iter())
-            .filter(|output| graph.node(output.node).is_mean())
-            .map(|output| output.name.as_str())
-            .collect();
-        let texture = texture.with_outputs(&means);
+        let texture = means(&texture);
         let text = std::fs::read_to_string(&path).expect("a graph");
         let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let wavelength = json.pointer("/extra/mipless/wavelength");
