@@ -38,15 +38,15 @@ impl<'b> Scalars<'b> for Ensemble<'b> {
 /// itself, unless something else is made of it. Or one of the whole parts of coordinates.
 #[derive(Clone, Debug)]
 pub struct Image {
-    pub(super) function: Option<FunctionRef>,
+    function: Option<FunctionRef>,
     /// Of how many whole parts it is a function, if it is one of them.
-    pub(super) axes: Option<usize>,
-    pub(super) channels: usize,
+    axes: Option<usize>,
+    channels: usize,
     /// The inputs of the graph, if it reads any.
-    pub(super) parameters: Vec<Type>,
-    pub(super) key: String,
+    parameters: Vec<Type>,
+    key: String,
     /// Means and covariance over all numbers, if no input of the graph shapes them.
-    pub(super) known: Option<Arc<[Vec<f32>; 2]>>,
+    known: Option<Arc<[Vec<f32>; 2]>>,
 }
 
 /// Pairs of channels, in the order of the lower triangle of a matrix.
@@ -76,32 +76,47 @@ impl Image {
     ) -> Self {
         let compiler = lower.compiler;
         let key = format!("image of {source} {own} {ends:?}");
+        Self::kept(lower, key, None, |lower| {
+            let region = super::fusion::regions(compiler, ends, &[NodeId(source as u32)]);
+            let is_live = is_live(compiler, &region);
+            let of = (source, own, ends, &region[..], is_live);
+            let function = function(compiler, lower.module, of);
+            let known = (!is_live).then(|| {
+                let module = alone(compiler, |compiler, module| {
+                    self::function(compiler, module, of);
+                });
+                moments(&module)
+            });
+            (function, known)
+        })
+    }
+
+    /// The image of this key among those of the compilation, else what is made: its function, and its
+    /// means and covariance unless inputs of the graph shape them.
+    pub(super) fn kept<'b>(
+        lower: &mut Lower<'_, 'b>,
+        key: String,
+        axes: Option<usize>,
+        make: impl FnOnce(&mut Lower<'_, 'b>) -> (FunctionRef, Option<[Vec<f32>; 2]>),
+    ) -> Self {
+        let compiler = lower.compiler;
         if let Some(known) = compiler.images.borrow().get(&key) {
             return known.clone();
         }
-        let region = super::fusion::regions(compiler, ends, &[NodeId(source as u32)]);
-        let is_live = is_live(compiler, &region);
-        let of = (source, own, ends, &region[..], is_live);
-        let function = function(compiler, lower.module, of);
-        let channels = function.results.len();
-        let known = (!is_live).then(|| {
-            let module = alone(compiler, |compiler, module| {
-                self::function(compiler, module, of);
-            });
-            Arc::new(moments(&module))
-        });
+        let (function, known) = make(lower);
+        let parameters = match known {
+            Some(_) => Vec::new(),
+            None => (lower.arguments.parameters.iter())
+                .map(|p| p.ty())
+                .collect(),
+        };
         let image = Self {
-            parameters: match is_live {
-                true => (lower.arguments.parameters.iter())
-                    .map(|p| p.ty())
-                    .collect(),
-                false => Vec::new(),
-            },
+            parameters,
+            channels: function.results.len(),
             function: Some(function),
-            axes: None,
-            channels,
+            axes,
             key: key.clone(),
-            known,
+            known: known.map(Arc::new),
         };
         compiler.images.borrow_mut().insert(key, image.clone());
         image

@@ -343,26 +343,12 @@ impl Image {
     fn of_steps(lower: &mut Lower<'_, '_>, steps: &Steps, ends: &[usize]) -> Self {
         let compiler = lower.compiler;
         let key = format!("image of steps {:?} {ends:?}", steps.roundings);
-        if let Some(known) = compiler.images.borrow().get(&key) {
-            return known.clone();
-        }
-        let is_live = is_live(compiler, &steps.region(compiler, ends));
-        let function = steps.function(compiler, lower.module, ends, is_live);
-        let image = Self {
-            parameters: match is_live {
-                true => (lower.arguments.parameters.iter())
-                    .map(|p| p.ty())
-                    .collect(),
-                false => Vec::new(),
-            },
-            channels: function.results.len(),
-            function: Some(function),
-            axes: Some(steps.axes()),
-            key: key.clone(),
-            known: (!is_live).then(|| Arc::new(steps.sampled(compiler, ends).moments())),
-        };
-        compiler.images.borrow_mut().insert(key, image.clone());
-        image
+        Self::kept(lower, key, Some(steps.axes()), |lower| {
+            let is_live = is_live(compiler, &steps.region(compiler, ends));
+            let function = steps.function(compiler, lower.module, ends, is_live);
+            let known = (!is_live).then(|| steps.sampled(compiler, ends).moments());
+            (function, known)
+        })
     }
 }
 
