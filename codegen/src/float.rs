@@ -39,7 +39,8 @@ pub trait Float:
     fn from_u32(x: u32) -> Self;
     /// Towards 0; saturates.
     fn to_i32(self) -> i32;
-    /// The bits of the nearest f32.
+    /// The bits of the nearest f32; of what is not a number always `7fc0_0000`: its sign and payload
+    /// are whatever the processor's instructions left.
     fn bits(self) -> u32;
     /// The 12 leading significant bits of the nearest f32.
     fn high(self) -> Self;
@@ -98,7 +99,12 @@ macro_rules! float_bank {
             }
             #[inline(always)]
             fn bits(self) -> u32 {
-                (self as f32).to_bits()
+                let nearest = self as f32;
+                if nearest.is_nan() {
+                    0x7fc0_0000
+                } else {
+                    nearest.to_bits()
+                }
             }
             #[inline(always)]
             fn high(self) -> Self {

@@ -507,7 +507,7 @@ fn generate(functions: &[Vec<[u8; 4]>]) -> Module {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
     fn random_programs_are_the_interpreters(
