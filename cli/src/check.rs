@@ -78,7 +78,7 @@ impl fmt::Display for Replacements<'_> {
         for replaced in &audit.replaced {
             let node = texture.checked().graph().node(replaced.node);
             let how = match replaced.remedy {
-                Remedy::Sampled => "is averaged over 7 points inside the footprint",
+                Remedy::Sampled => "is averaged over 7 to 32 points inside the footprint",
                 Remedy::Repeated => "repeats, and is read from a map of its period",
                 Remedy::Drawn => "is drawn to the mean of the texture",
             };

@@ -3,9 +3,11 @@
 //!
 //! `cargo bench -p mipless-tests --bench folder -- DIR…` looks at all documents in these folders, of
 //! any format that is taken, without an argument at those of `mtlx` and `ptex` in the folder that
-//! `MIPLESS_CORPUS` names. It prints Markdown: by window the median, the 95 % and the worst error,
-//! and the outputs that are worse than by `point`, beyond what the truth knows; then the outputs with
-//! the largest errors, and how much of the CPU each document took to compile by `auto`.
+//! `MIPLESS_CORPUS` names. It prints Markdown: by window how many outputs show something there, the
+//! median, the 95 % and the worst error of these, and those that are worse than by `point`, beyond what
+//! the truth knows; then the outputs with the largest errors, and how long each document took to
+//! compile by `auto`. An output shows nothing in a window whose pixels hardly differ, by the truth, by
+//! `auto` and by `point`: most outputs of a material are constants.
 //!
 //! Errors are the root mean square over the components of an output and [`PIXELS`] pixels of a
 //! picture of [`SIDE`] pixels each way, of what a display shows.
@@ -14,7 +16,7 @@ use mipless::{CheckOptions, Files as _, Folder, Footprint, Method, Texture, spec
 use mipless_import::{Format, import};
 use mipless_tests::measured::Measured;
 use mipless_tests::random::Random;
-use mipless_tests::shown::{evaluate, mean, rms, shown, truths};
+use mipless_tests::shown::{VISIBLE, evaluate, mean, rms, shown, truths, variance};
 use rayon::prelude::*;
 use std::f64::consts::SQRT_2;
 use std::panic::{catch_unwind, set_hook};
@@ -36,6 +38,8 @@ struct Row {
     name: String,
     window: f64,
     errors: Measured,
+    /// Whether its pixels differ, or what a point of them shows does.
+    shows: bool,
 }
 
 /// What became of a document.
@@ -117,6 +121,7 @@ fn measured(path: &Path, name: &str) -> Outcome {
             let of = start..start + output.ty.components();
             start = of.end;
             let error = |values: &[Vec<f64>]| rms(&values[of.clone()], &truth[of.clone()]);
+            let spread = |values: &[Vec<f64>]| variance(&values[of.clone()]).sqrt();
             rows.push(Row {
                 name: format!("{name} {}", output.name),
                 window,
@@ -125,6 +130,7 @@ fn measured(path: &Path, name: &str) -> Outcome {
                     point: error(&point),
                     floor: rms(&truths[0][of.clone()], &truths[1][of.clone()]) / SQRT_2,
                 },
+                shows: spread(&truth).max(spread(&point)).max(spread(&auto)) >= VISIBLE,
             });
         }
     }
@@ -161,10 +167,13 @@ fn report(outcomes: Vec<Outcome>) {
         }
     }
     println!("{documents} documents, of {refused} nothing loads, panicked: {panicked:?}\n");
-    println!("| window | outputs | median | 95 % | worst | of a point | worse than a point |");
-    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| window | outputs | show | median | 95 % | worst | of a point | worse than a point |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     for window in WINDOWS {
-        let of_window: Vec<&Row> = rows.iter().filter(|row| row.window == window).collect();
+        let all: Vec<&Row> = rows.iter().filter(|row| row.window == window).collect();
+        let of_window: Vec<&Row> = all.iter().copied().filter(|row| row.shows).collect();
         let at = |share: f64, of: &dyn Fn(&Row) -> f64| {
             let mut values: Vec<f64> = of_window.iter().map(|row| of(row)).collect();
             values.sort_by(f64::total_cmp);
@@ -175,9 +184,10 @@ fn report(outcomes: Vec<Outcome>) {
                 .unwrap_or(0.0)
         };
         let auto = |row: &Row| row.errors.auto;
-        let worse = of_window.iter().filter(|row| row.errors.excess() > 0.0);
+        let worse = all.iter().filter(|row| row.errors.excess() > 0.0);
         println!(
-            "| {window} | {} | {:.4} | {:.4} | {:.4} | {:.4} | {} |",
+            "| {window} | {} | {} | {:.4} | {:.4} | {:.4} | {:.4} | {} |",
+            all.len(),
             of_window.len(),
             at(0.5, &auto),
             at(0.95, &auto),

@@ -9,7 +9,9 @@
 //! `cargo bench -p mipless-tests --bench random -- laws COUNT [FIRST]` takes the graphs of COUNT seeds
 //! from FIRST on through all laws of composition by every method, and prints what is broken, by law.
 //! Three graphs of each kind of failure are reduced and written to `target/composition`, unless
-//! `FAST=1` is set (`EACH=20`: twenty). `LAWS=vanishing,far` and `METHODS=local,quad` look at less.
+//! `FAST=1` is set (`EACH=20`: twenty). `LAWS=vanishing,far` and `METHODS=local,quad` look at less, and
+//! `SECONDS=600` begins no further graph after so long; the next run goes on from the seed that is
+//! printed.
 //!
 //! `cargo bench -p mipless-tests --bench random -- seed SEED` prints the graph of a seed.
 //!
@@ -111,8 +113,13 @@ fn laws(count: u64, first: u64) {
     let start = Instant::now();
     let laws: Vec<Law> = chosen("LAWS", &Law::ALL, |law| law.name().to_owned());
     let methods: Vec<Method> = chosen("METHODS", &METHODS, Method::to_string);
-    let found: Vec<(u64, Vec<Violation>, f64)> = (first..first + count)
-        .into_par_iter()
+    let limit: Option<f64> = env::var("SECONDS")
+        .ok()
+        .and_then(|limit| limit.parse().ok());
+    let limit = limit.unwrap_or(f64::INFINITY);
+    let mut found: Vec<(u64, Vec<Violation>, f64)> = (first..first + count)
+        .take_while(|_| start.elapsed().as_secs_f64() < limit)
+        .par_bridge()
         .map(|seed| {
             let start = Instant::now();
             let broken = catch_unwind(|| {
@@ -123,6 +130,7 @@ fn laws(count: u64, first: u64) {
             (seed, broken, start.elapsed().as_secs_f64())
         })
         .collect();
+    found.sort_by_key(|&(seed, ..)| seed);
     let mut kinds: BTreeMap<String, Vec<(u64, &Violation)>> = BTreeMap::new();
     for (seed, broken, _) in &found {
         for violation in broken {
@@ -138,7 +146,9 @@ fn laws(count: u64, first: u64) {
         .filter(|(_, broken, _)| !broken.is_empty())
         .count();
     println!(
-        "{count} graphs, {broken} break a law, {:.0} s",
+        "{} graphs to seed {}, {broken} break a law, {:.0} s",
+        found.len(),
+        found.last().map_or(first, |&(seed, ..)| seed),
         start.elapsed().as_secs_f64()
     );
     let mut slowest: Vec<(f64, u64)> = found.iter().map(|&(seed, _, time)| (time, seed)).collect();

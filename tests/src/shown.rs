@@ -7,7 +7,7 @@ use mipless_runtime::srgb::srgb_from_linear;
 use std::f64::consts::TAU;
 
 /// A graph whose values spread less over its places shows nothing.
-const VISIBLE: f64 = 0.01;
+pub const VISIBLE: f64 = 0.01;
 
 /// What a display shows of values.
 pub fn shown(values: Vec<Vec<f32>>) -> Vec<Vec<f64>> {

@@ -61,12 +61,12 @@ const BROKEN: [(Law, usize); 5] = [
     // of 10⁶ units that is a line (198, `split:4`).
     (Law::Spread, 2),
     // Edges that lie at the value itself: a pattern's 0 or 1 into `floor`, cells, a divisor or a bound.
-    (Law::Vanishing, 11),
+    (Law::Vanishing, 10),
     // Seven points of what an input of the graph shapes, whose mean nobody knows beforehand, and what
     // has no mean.
-    (Law::Far, 13),
-    // Edges, too: one of seven points that lies on one side or the other is a seventh of the jump.
-    (Law::Rounding, 17),
+    (Law::Far, 11),
+    // Edges, too: one of a few points that lies on one side or the other is its share of the jump.
+    (Law::Rounding, 16),
     // Where a point is next to exact: all six are off by less than .0001 (4, 21, 56, 61, 281, 296).
     (Law::Worse, 6),
 ];

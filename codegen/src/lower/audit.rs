@@ -9,9 +9,11 @@
 //! 1. the closed form as it is;
 //! 2. what depends on position alone and repeats by maps ([`super::torus`]);
 //! 3. the nodes at which the error begins by points ([`super::sampled`]), what follows them closed;
-//! 4. the outputs themselves by points.
+//! 4. the outputs themselves by points;
+//! 5. more points, of what is sampled already.
 //!
-//! Each node is sampled in the bands alone where that is better. What is left of an output's error
+//! Each node is sampled in the bands alone where that is better, and by more points where few still
+//! miss the tolerance. What is left of an output's error
 //! is then less where it is drawn to the mean of the texture ([`super::drawn`]). The result depends on the graph
 //! alone, and is remembered by its shape ([`super::shape`]): an edit that changes nothing that
 //! matters costs nothing.
@@ -25,7 +27,7 @@ mod truth;
 mod verdict;
 
 use super::bands::Bands;
-use super::drawn::Drawn;
+use super::drawn::{Drawn, Far};
 use super::mixture::Mixtures;
 use super::sampled::Sampling;
 use super::shape::{Shape, shape};
@@ -291,6 +293,7 @@ fn decide(
         }
     };
     let closed_errors = truth.errors(&found);
+    let closed_values = found.clone();
     let mut best = Candidate {
         program: closed,
         errors: closed_errors.clone(),
@@ -325,21 +328,46 @@ fn decide(
         }
         facts.repeated.clone_from(&best.repeated);
     }
-    for by in [Points::AtBeginnings, Points::AtEnds] {
+    for by in [
+        Points::AtBeginnings,
+        Points::AtEnds,
+        Points::MoreAtAll,
+        Points::MoreAtEnds,
+    ] {
         if verdict(&best.errors).is_good() {
             break;
         }
         let mut added = match by {
             Points::AtBeginnings => beginnings(places, graph, catalogue, options, facts, &steady),
-            Points::AtEnds => ends(graph, &truth, [&best.errors, &point, &floor], &steady),
+            Points::AtEnds | Points::MoreAtEnds => {
+                let of = (&truth, &closed_values[..]);
+                ends(graph, of, [&best.errors, &point, &floor], &steady)
+            }
+            Points::MoreAtAll => best.sampled.clone(),
         };
+        if matches!(by, Points::MoreAtAll | Points::MoreAtEnds) {
+            added.values_mut().for_each(|by| by.take_more(Bands::ALL));
+        }
+        if added.is_empty() {
+            continue;
+        }
         facts.sampled.extend(added.clone());
         let points = candidate(facts);
         let mut everywhere = true;
         added.retain(|node, sampling| {
-            sampling.within = where_better(&points.errors, &best.errors, &readers[*node], SAMPLED);
-            everywhere &= sampling.within == Bands::ALL;
-            sampling.within != 0
+            let better = where_better(&points.errors, &best.errors, &readers[*node], SAMPLED);
+            everywhere &= better == Bands::ALL;
+            match best.sampled.get(node) {
+                // Few points are enough elsewhere.
+                Some(before) => {
+                    let more = sampling.finer & better;
+                    *sampling = before.clone();
+                    sampling.within |= better;
+                    sampling.take_more(more);
+                }
+                None => sampling.keep(better),
+            }
+            better != 0
         });
         facts.sampled.clone_from(&best.sampled);
         if !added.is_empty() {
@@ -347,6 +375,47 @@ fn decide(
             let points = if everywhere { points } else { candidate(facts) };
             best = best.or(points, verdict);
             facts.sampled.clone_from(&best.sampled);
+        }
+    }
+
+    let right = Options {
+        method: Method::Supersample(LOOK),
+        moments: false,
+        ..*options
+    };
+    let largest = &footprints[footprints.len() - LARGEST..];
+    let is_drawn = |(_, by): &(&usize, &Sampling)| {
+        matches!(by.drawn.far, Far::Times(_)) && by.drawn.lost.iter().any(|&lost| lost > 0.0)
+    };
+    let live: Vec<usize> = (best.sampled.iter().filter(is_drawn))
+        .map(|(&node, _)| node)
+        .collect();
+    if !live.is_empty() {
+        for node in &live {
+            if let Some(sampling) = facts.sampled.get_mut(node) {
+                sampling.drawn.lost = [0.0; Bands::COUNT];
+            }
+        }
+        let before = program(graph, catalogue, options, facts);
+        facts.sampled.clone_from(&best.sampled);
+        let components: Vec<_> = (outputs.iter())
+            .map(|&(output, _)| truth.components(output))
+            .collect();
+        let near = Change {
+            before: &before,
+            after: &best.program,
+            right: &program(graph, catalogue, &right, facts),
+        }
+        .near(graph, largest, &components);
+        if near.iter().any(|near| !near.is_empty()) {
+            for node in live {
+                if let Some(sampling) = facts.sampled.get_mut(&node) {
+                    let of_readers = readers[node].iter().flat_map(|&output| &near[output]);
+                    sampling.drawn.stay_near(of_readers);
+                }
+            }
+            best.sampled.clone_from(&facts.sampled);
+            best.program = program(graph, catalogue, options, facts);
         }
     }
 
@@ -366,17 +435,11 @@ fn decide(
         .filter(|(_, node)| !steady[*node] && facts.drawn.contains_key(node))
         .collect();
     if !live.is_empty() {
-        let right = Options {
-            method: Method::Supersample(LOOK),
-            moments: false,
-            ..*options
-        };
         let change = Change {
             before: &best.program,
             after: &program(graph, catalogue, options, facts),
             right: &program(graph, catalogue, &right, facts),
         };
-        let largest = &footprints[footprints.len() - LARGEST..];
         let components: Vec<_> = (live.iter())
             .map(|&(output, _)| truth.components(output))
             .collect();
@@ -451,6 +514,12 @@ fn audited_outputs(bands: Bands, [point, closed, auto, floor]: [&Errors; 4]) -> 
 /// Which nodes are sampled.
 #[derive(Clone, Copy)]
 enum Points {
+    /// Those at which the error begins.
     AtBeginnings,
+    /// The outputs.
     AtEnds,
+    /// Those that are sampled, by more points.
+    MoreAtAll,
+    /// The outputs, by more points.
+    MoreAtEnds,
 }

@@ -60,8 +60,8 @@ impl Bands {
     /// Whether a footprint's band is one of these bits; what lies beyond the first or the last of all
     /// is theirs.
     pub(super) fn within<'b>(band: Float<'b>, bits: u32) -> Bool<'b> {
-        if bits == Self::ALL {
-            return band.builder().literal(true);
+        if bits == Self::ALL || bits == 0 {
+            return band.builder().literal(bits != 0);
         }
         let nearest = (band + 0.5)
             .clamp(0.0, Self::LAST as f32)

@@ -89,6 +89,15 @@ impl Drawn {
         lost
     }
 
+    /// Holds near these alone.
+    pub(super) fn stay_near<'n>(&mut self, near: impl Iterator<Item = &'n Near>) {
+        for near in near {
+            if !self.near.iter().any(|known| known.scalar == near.scalar) {
+                self.near.push(near.clone());
+            }
+        }
+    }
+
     /// A component of this mean, drawn by a share.
     pub(super) fn draw<'b>(&self, component: usize, mean: Float<'b>, lost: Float<'b>) -> Float<'b> {
         let far = self.far.of(component, mean, |x| mean.literal(x));
@@ -97,6 +106,16 @@ impl Drawn {
 }
 
 impl<'b> Lower<'_, 'b> {
+    /// The share of the way at a band, and near the defaults of what it holds for alone.
+    pub(super) fn lost(&self, drawn: &Drawn, band: Float<'b>) -> Float<'b> {
+        let mut lost = drawn.lost(band);
+        for near in &drawn.near {
+            let away = self.arguments.parameters[near.scalar].float() + -near.default;
+            lost *= (1.0 - away.abs() * (1.0 / near.reach)).max(0.0);
+        }
+        lost
+    }
+
     /// The node's signals drawn to their means, where `auto` is to do so.
     pub(super) fn drawn(&self, index: usize, signals: &[Signal<'b>]) -> Option<Vec<Signal<'b>>> {
         let compiler = self.compiler;
@@ -105,11 +124,7 @@ impl<'b> Lower<'_, 'b> {
             && !self.measures
             && !self.in_rule;
         let drawn = compiler.facts.drawn.get(&index).filter(|_| applies)?;
-        let mut lost = drawn.lost(drawn.bands.of(&self.arguments));
-        for near in &drawn.near {
-            let away = self.arguments.parameters[near.scalar].float() + -near.default;
-            lost *= (1.0 - away.abs() * (1.0 / near.reach)).max(0.0);
-        }
+        let lost = self.lost(drawn, drawn.bands.of(&self.arguments));
         let each = signals.iter().enumerate().map(|(i, signal)| {
             let flat = signal.flat();
             let mean = drawn.draw(i, flat.mean, lost);

@@ -4,7 +4,9 @@
 //! Seven points of equal weight, the centre and a hexagon of radius √(7/3) standard deviations, have
 //! the mean and the covariance of the footprint, so that whatever is linear in it is exact. The
 //! hexagon turns from pixel to pixel, which makes noise of what would be a moiré. Mean, linear
-//! response and the rest of the variance of the points are the node's signal.
+//! response and the rest of the variance of the points are the node's signal. In the bands where that
+//! still misses the tolerance, a sunflower of [`MORE`] points takes the hexagon's place: of an edge
+//! seven points leave .063 of its jump (root mean square over places and directions), 32 leave .021.
 //!
 //! An output is closed in the other bands alone: in a function of its own, which is called where it is
 //! read. What follows a node that is no output reads what it has in common with other nodes, so that it
@@ -27,11 +29,13 @@ use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// How many points there are.
 pub(super) const POINTS: usize = 7;
+/// How many points there are where these are too few.
+pub(super) const MORE: usize = 32;
 /// How many points there are where a map is tried.
 const MANY: usize = 256;
 /// The golden section.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-/// How many turns of the hexagon there are.
+/// How many turns of the hexagon there are, and of the sunflower.
 const TURNS: u32 = 64;
 
 /// How a node is sampled.
@@ -41,6 +45,28 @@ pub(super) struct Sampling {
     pub(super) drawn: Drawn,
     /// The bits of the bands where the node is sampled.
     pub(super) within: u32,
+    /// The bits of the bands where there are more points.
+    pub(super) finer: u32,
+    /// The shares of `drawn` where there are.
+    pub(super) lost_of_more: [f32; Bands::COUNT],
+}
+
+impl Sampling {
+    /// Takes more points in the bands of these bits, as far as it samples there.
+    pub(super) fn take_more(&mut self, bits: u32) {
+        self.finer |= bits & self.within;
+        for (band, lost) in self.drawn.lost.iter_mut().enumerate() {
+            if self.finer >> band & 1 == 1 {
+                *lost = self.lost_of_more[band];
+            }
+        }
+    }
+
+    /// Samples in the bands of these bits alone.
+    pub(super) fn keep(&mut self, bits: u32) {
+        self.within &= bits;
+        self.finer &= bits;
+    }
 }
 
 impl<'g, 'b> Lower<'g, 'b> {
@@ -65,21 +91,39 @@ impl<'g, 'b> Lower<'g, 'b> {
         let compiler = self.compiler;
         let band = sampling.drawn.bands.of(&self.arguments);
         let within = Bands::within(band, sampling.within);
-        let lost = sampling.drawn.lost(band);
-        let turn = self.arguments.footprint.hashed(0x51ed_270b);
-        let turn = (turn >> (32 - TURNS.ilog2())) * (POINTS as u32);
+        let lost = self.lost(&sampling.drawn, band);
+        let turn = self.arguments.footprint.hashed(0x51ed_270b) >> (32 - TURNS.ilog2());
         let arguments = self.arguments.clone();
-        let rows = Rows {
-            count: POINTS,
-            name: "sampled_places",
-            places,
-            first: turn,
+        let b = self.b();
+        let rows = match sampling.finer {
+            0 => Rows {
+                count: b.uint(POINTS as u32),
+                weight: b.float(1.0 / POINTS as f32),
+                name: "sampled_places",
+                places,
+                first: turn * POINTS as u32,
+            },
+            finer => {
+                let more = Bands::within(band, finer);
+                let after = TURNS * POINTS as u32;
+                Rows {
+                    count: more.select(MORE as u32, POINTS as u32),
+                    weight: more.select(1.0 / MORE as f32, 1.0 / POINTS as f32),
+                    name: "finer_places",
+                    places: finer_places,
+                    first: more.select(turn * MORE as u32 + after, turn * POINTS as u32),
+                }
+            }
         };
         let points = self.points(index, (closed.len(), &arguments, None), within, rows);
         let points: Vec<Signal<'b>> = (points.into_iter().zip(closed).enumerate())
-            .map(|(i, (signal, closed))| Signal {
-                mean: bounded(sampling.drawn.draw(i, signal.mean, lost), closed.range),
-                ..signal
+            .map(|(i, (signal, closed))| {
+                let far = sampling.drawn.far.of(i, closed.flat_mean(), |x| b.float(x));
+                let mean = signal.mean + lost * (far - signal.mean);
+                Signal {
+                    mean: bounded(mean, closed.range),
+                    ..signal
+                }
             })
             .collect();
         let everywhere = within.as_constant() == Some(true);
@@ -123,8 +167,10 @@ impl<'g, 'b> Lower<'g, 'b> {
             }
         }
         let first = is_wide.select(MANY as u32, 0u32);
+        let b = self.b();
         let rows = Rows {
-            count: MANY,
+            count: b.uint(MANY as u32),
+            weight: b.float(1.0 / MANY as f32),
             name: "many_places",
             places: many_places,
             first,
@@ -149,6 +195,7 @@ impl<'g, 'b> Lower<'g, 'b> {
         within: Bool<'b>,
         Rows {
             count,
+            weight,
             name,
             places,
             first,
@@ -165,9 +212,8 @@ impl<'g, 'b> Lower<'g, 'b> {
         });
         let b = self.b();
         let start = vec![b.float(0.0); Sums::COUNT * components];
-        let points = within.select(count as u32, 0u32);
+        let points = within.select(count, 0u32);
         let sums = b.fold(&sample, points, start, (first, arguments.clone()));
-        let weight = 1.0 / count as f32;
         (sums.chunks(Sums::COUNT))
             .map(|sums| {
                 let sums = Sums::of(sums);
@@ -266,7 +312,9 @@ fn closed_function(
 
 /// Points in a table: so many, from a row on.
 struct Rows<'b> {
-    count: usize,
+    count: Uint<'b>,
+    /// One over the count.
+    weight: Float<'b>,
     /// The table, and what fills it.
     name: &'static str,
     places: fn() -> Vec<f32>,
@@ -337,15 +385,51 @@ fn places() -> Vec<f32> {
     places
 }
 
-/// Many points, in standard deviations: a sunflower's (Vogel 1979), at the radii at which a Gaussian has
-/// equal shares between them; then as many of a unit square about 0.
-fn many_places() -> Vec<f32> {
-    let mut places = Vec::with_capacity(4 * MANY);
-    for i in 0..MANY {
-        let inside = (i as f64 + 0.5) / MANY as f64;
+/// Points of a sunflower (Vogel 1979), at the radii at which a Gaussian has equal shares between them.
+fn sunflower(count: usize) -> impl Iterator<Item = [f64; 2]> {
+    (0..count).map(move |i| {
+        let inside = (i as f64 + 0.5) / count as f64;
         let radius = (-2.0 * inside.ln()).sqrt();
         let angle = TAU * (i as f64 * GOLDEN).fract();
-        places.extend([angle.cos(), angle.sin()].map(|x| ((radius * x) as f32).high()));
+        [angle.cos(), angle.sin()].map(|x| radius * x)
+    })
+}
+
+/// Points moved and stretched so that their mean is 0 and their covariance 1, by the factor of Cholesky.
+fn whitened(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mean =
+        |f: &dyn Fn(&[f64; 2]) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
+    let [x, y] = [mean(&|p| p[0]), mean(&|p| p[1])];
+    let xx = mean(&|p| (p[0] - x).powi(2));
+    let xy = mean(&|p| (p[0] - x) * (p[1] - y));
+    let yy = mean(&|p| (p[1] - y).powi(2));
+    let along = xx.sqrt();
+    let across = (yy - xy * xy / xx).sqrt();
+    let of = |p: &[f64; 2]| {
+        let first = (p[0] - x) / along;
+        [first, (p[1] - y - xy / along * first) / across]
+    };
+    points.iter().map(of).collect()
+}
+
+/// The points of every turn of the hexagon, then those of every turn of the sunflower.
+fn finer_places() -> Vec<f32> {
+    let mut places = places();
+    let points = whitened(&sunflower(MORE).collect::<Vec<_>>());
+    for turn in 0..TURNS {
+        let (sin, cos) = (TAU * f64::from(turn) / f64::from(TURNS)).sin_cos();
+        for [x, y] in &points {
+            places.extend([cos * x - sin * y, sin * x + cos * y].map(|x| (x as f32).high()));
+        }
+    }
+    places
+}
+
+/// Many points, in standard deviations: a sunflower's; then as many of a unit square about 0.
+fn many_places() -> Vec<f32> {
+    let mut places = Vec::with_capacity(4 * MANY);
+    for point in sunflower(MANY) {
+        places.extend(point.map(|x| (x as f32).high()));
     }
     for i in 0..MANY {
         places.extend(scattered(i).map(|x| ((x - 0.5) as f32).high()));
@@ -406,12 +490,18 @@ mod tests {
 
     #[test]
     fn points_have_the_mean_and_the_covariance_of_the_footprint() {
-        for turn in places().chunks(2 * POINTS) {
+        let (few, more) = (places(), finer_places());
+        let turns = few
+            .chunks(2 * POINTS)
+            .chain(more[few.len()..].chunks(2 * MORE));
+        assert_eq!(turns.clone().count(), 2 * TURNS as usize);
+        for turn in turns {
             let points: Vec<[f64; 2]> = (turn.chunks(2))
                 .map(|p| [f64::from(p[0]), f64::from(p[1])])
                 .collect();
-            let mean =
-                |f: &dyn Fn(&[f64; 2]) -> f64| points.iter().map(f).sum::<f64>() / POINTS as f64;
+            let mean = |f: &dyn Fn(&[f64; 2]) -> f64| {
+                points.iter().map(f).sum::<f64>() / points.len() as f64
+            };
             for (moment, right) in [
                 (mean(&|p| p[0]), 0.0),
                 (mean(&|p| p[1]), 0.0),

@@ -3,10 +3,17 @@
 use super::{Algebra, Normal, Piecewise, Signal, Slope, spread};
 
 impl<'b> Algebra<'b> {
-    /// max(X, Y): with a = (m_X − m_Y)/θ, θ² = Var(X − Y): mean m_Y + θ(aΦ(a) + φ(a)),
-    /// coefficients Φ(a)x + Φ(−a)y, distortion θ² d(a). Exact in mean and variance for Gaussians.
+    /// max(X, Y): with a = (m_X − m_Y)/θ, θ² = Var(X − Y): mean max(m_X, m_Y) + θ(φ(a) − |a|Φ(−|a|)),
+    /// so that the larger one keeps its digits far above the other, coefficients Φ(a)x + Φ(−a)y,
+    /// distortion θ² d(a). Exact in mean and variance for Gaussians, and one of both where all its values
+    /// are the larger ones.
     pub fn maximum(&mut self, x: &Signal<'b>, y: &Signal<'b>) -> Signal<'b> {
         let range = [x.range[0].max(y.range[0]), x.range[1].max(y.range[1])];
+        for (above, below) in [(x, y), (y, x)] {
+            if above.cell.is_none() && above.range[0] >= below.range[1] {
+                return above.clone();
+            }
+        }
         if let Some(both) = self.either(x, y) {
             return both;
         }
@@ -33,7 +40,9 @@ impl<'b> Algebra<'b> {
         let (sd, inverse) = spread(variance);
         let normal = Normal::at(difference.mean, inverse);
         let mut out = x * normal.below + y * normal.above;
-        out.mean = y.mean + normal.hinge(difference.mean, sd);
+        let below = normal.above.min(normal.below);
+        let beyond = sd * normal.density - difference.mean.abs() * below;
+        out.mean = x.mean.max(y.mean) + beyond.max(0.0);
         out.range = range;
         self.attach_fresh(&mut out, variance * normal.hinge_distortion());
         out.slope = self.larger(x, y, &difference);

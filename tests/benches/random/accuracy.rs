@@ -123,7 +123,8 @@ pub(super) fn measure(count: u64, first: u64) {
     for (title, of) in orders {
         rows.sort_by(|a, b| of(b).total_cmp(&of(a)));
         header(title);
-        rows.iter().take(LISTED / 2).for_each(|row| line(row, ""));
+        let listed = rows.iter().take(LISTED / 2);
+        listed.for_each(|row| line(row, &replaced(row.seed)));
     }
     if !asked("FAST") {
         worse.par_iter().take(REDUCED).for_each(reduce);
@@ -147,7 +148,7 @@ pub(super) fn measure(count: u64, first: u64) {
 
 fn header(title: &str) {
     println!(
-        "\n{title}:\n\n| seed | nodes | wavelength | auto | point | floor | far bias | suspected |"
+        "\n{title}:\n\n| seed | nodes | wavelength | auto | point | floor | far bias | suspected, or replaced |"
     );
     println!("|---|---|---|---|---|---|---|---|");
 }
@@ -229,6 +230,19 @@ fn reduce(worse: &Row) {
     });
     let text = serde_json::to_string_pretty(&small).expect("JSON");
     write(&format!("worse_{}", worse.seed), &text);
+}
+
+/// What `auto` does in place of closed forms.
+fn replaced(seed: u64) -> String {
+    let (_, texture) = of_seed(seed);
+    let graph = texture.checked().graph();
+    let audit = texture.audit(&Options::default());
+    let each = audit.replaced.iter().map(|replaced| {
+        let kind = graph.node(replaced.node).spec.name;
+        let [from, to] = replaced.sizes;
+        format!("{kind} {:?} {from:.1e}–{to:.1e}", replaced.remedy)
+    });
+    each.collect::<Vec<_>>().join(", ")
 }
 
 /// The node whose error exceeds those of its inputs most, each relative to the spread of its values.

@@ -82,10 +82,11 @@ pub(super) fn beginnings(
     let facts = &facts;
     let truth = Truth::of(GLANCE, places, &every, catalogue, options, facts);
     let (point, floor) = (truth.errors(&truth.point), truth.floor());
-    let closed = truth.errors(&values(
+    let found = values(
         &program(&every, catalogue, options, facts),
         &places.footprints,
-    ));
+    );
+    let closed = truth.errors(&found);
     let bad: FxHashMap<usize, bool> = (every.outputs.iter().enumerate())
         .map(|(output, of)| {
             let bad = (0..Bands::COUNT).any(|band| {
@@ -105,15 +106,15 @@ pub(super) fn beginnings(
         })
         .map(|(index, output)| {
             let node = output.node.index();
-            (node, truth.sampling(index, steady[node]))
+            (node, truth.sampling(index, steady[node], &found))
         })
         .collect()
 }
 
-/// The nodes of the outputs whose error is too large.
+/// The nodes of the outputs whose error is too large, of which these are the values in closed form.
 pub(super) fn ends(
     graph: &Graph,
-    truth: &Truth<'_>,
+    (truth, found): (&Truth<'_>, &[Vec<f32>]),
     [closed, point, floor]: [&Errors; 3],
     steady: &[bool],
 ) -> FxHashMap<usize, Sampling> {
@@ -124,7 +125,7 @@ pub(super) fn ends(
         })
         .map(|(index, output)| {
             let node = output.node.index();
-            (node, truth.sampling(index, steady[node]))
+            (node, truth.sampling(index, steady[node], found))
         })
         .collect()
 }

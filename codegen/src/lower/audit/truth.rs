@@ -2,7 +2,7 @@
 
 use super::super::bands::Bands;
 use super::super::drawn::{Drawn, Far};
-use super::super::sampled::{POINTS, Sampling};
+use super::super::sampled::{MORE, POINTS, Sampling};
 use super::super::{Facts, Method, NodeDef, Options, program};
 use super::display::displayed;
 use super::places::{LARGEST, PLACES, Places};
@@ -199,30 +199,62 @@ impl<'p> Truth<'p> {
         })
     }
 
-    /// How an output is best sampled: see [`super::sampled`].
-    pub(super) fn sampling(&self, output: usize, is_steady: bool) -> Sampling {
+    /// How an output is best sampled: see [`super::sampled`]. Its points are drawn to the mean of the
+    /// texture; where inputs of the graph shape it, to `closed`, which moves with them, as far as this
+    /// has the right mean far away but for a factor.
+    pub(super) fn sampling(&self, output: usize, is_steady: bool, closed: &[Vec<f32>]) -> Sampling {
         let start = self.outputs[output].start;
-        let far = self.far(output);
-        let lost = std::array::from_fn(|band| {
+        let means = self.far(output);
+        let far = match is_steady {
+            true => Some(Far::Means(rounded(&means))),
+            false => self.factors(output, &means, closed, BIASED).map(Far::Times),
+        };
+        let lost = |points: usize, band: usize| {
+            let Some(far) = &far else { return 0.0 };
             let (mut between, mut within) = (0.0, 0.0);
             for (component, pixel, share) in self.places(output, band) {
                 let variance = f64::from(self.variance[component][pixel]).max(0.0);
-                let apart = f64::from(self.mean[component][pixel]) - far[component - start];
-                within += share * variance / POINTS as f64;
+                let to = far.of(component - start, closed[component][pixel], |x| x);
+                let apart = f64::from(self.mean[component][pixel]) - f64::from(to);
+                within += share * variance / points as f64;
                 between += share * (apart * apart - variance / f64::from(self.samples));
             }
             let lost = within / (between.max(0.0) + within).max(1e-30);
             // The finest band holds all that is finer, of which a point is right.
-            if is_steady && band > 0 && within > 0.0 {
+            if band > 0 && within > 0.0 {
                 stepped(lost)
             } else {
                 0.0
             }
-        });
+        };
+        let of = |points: usize| std::array::from_fn(|band| lost(points, band));
+        let [few, more] = [POINTS, MORE].map(of);
         Sampling {
-            drawn: self.drawn_to(Far::Means(rounded(&far)), lost),
+            drawn: self.drawn_to(far.unwrap_or(Far::Means(rounded(&means))), few),
             within: Bands::ALL,
+            finer: 0,
+            lost_of_more: more,
         }
+    }
+
+    /// How many times an output's values are its means far away, if that is no more than twice and no
+    /// less than half for each component. What is as `near` to its mean is its mean.
+    fn factors(
+        &self,
+        output: usize,
+        means: &[f64],
+        values: &[Vec<f32>],
+        near: f64,
+    ) -> Option<Vec<f32>> {
+        let found = self.components(output).map(|i| mean_of_largest(&values[i]));
+        let factors: Vec<f64> = (means.iter().zip(found))
+            .map(|(mean, found)| match (mean - found).abs() < near {
+                true => 1.0,
+                false => mean / found,
+            })
+            .collect();
+        let small = |factor: &f64| (0.5..2.0).contains(factor);
+        factors.iter().all(small).then(|| rounded(&factors))
     }
 
     /// How an output's values are best drawn to its means, in the bands of `within` where that counts;
@@ -239,15 +271,7 @@ impl<'p> Truth<'p> {
         let far = if is_steady {
             Far::Means(rounded(&means))
         } else {
-            let closed = components.map(|component| mean_of_largest(&found[component]));
-            let factors: Vec<f64> = (means.iter().zip(closed))
-                .map(|(far, closed)| far / closed)
-                .collect();
-            let small = |factor: &f64| (0.5..2.0).contains(factor);
-            if !factors.iter().all(small) {
-                return None;
-            }
-            Far::Times(rounded(&factors))
+            Far::Times(self.factors(output, &means, found, 0.0)?)
         };
         let lost = std::array::from_fn(|band| {
             let triples: Vec<(f64, [f64; 3])> = (self.places(output, band))

@@ -1,7 +1,7 @@
 //! Sawtooth, triangle, the hexagon of hues, whole parts.
 
 use super::super::wave::Staircase;
-use super::super::{Corner, LinearWave};
+use super::super::{Corner, LinearWave, Transfer};
 use super::{Case, DEVIATIONS, Make, evaluate, grid, module, unit};
 
 type Function = fn(f64) -> f64;
@@ -94,5 +94,37 @@ fn waves_without_spread_are_their_values() {
             );
             assert!(distortion < 1e-6, "{name} at {m}: {distortion}");
         }
+    }
+}
+
+#[test]
+fn a_wave_of_a_signal_that_reaches_one_stretch_is_its_line() {
+    let points = grid(0.05, 0.85, &[1e-3, 0.1, 0.3, 0.5]);
+    let make: Make<'_> = &|_| Box::new(LinearWave::sawtooth());
+    for (shift, range) in [(0.0, [0.0, 0.9]), (-3.0, [-3.0, -2.1])] {
+        let moved: Vec<(f32, f32)> = points.iter().map(|&(m, v)| (m + shift, v)).collect();
+        let results = evaluate::<f32>(&module(make, range), &moved);
+        for (&(m, _), [mean, slope, curvature, .., distortion, _]) in points.iter().zip(results) {
+            assert!((mean - f64::from(m)).abs() < 1e-6, "{mean} for {m}");
+            assert!((slope - 1.0).abs() < 1e-6 && curvature.abs() < 1e-6);
+            assert!(distortion < 1e-6, "{distortion} at {m}");
+        }
+    }
+}
+
+#[test]
+fn a_wave_knows_what_values_a_part_of_its_period_has() {
+    let triangle = LinearWave::triangle();
+    let range = |input| Transfer::range(&triangle, input);
+    for (input, wanted) in [
+        ([0.1, 0.3], [0.2, 0.6]),
+        ([0.4, 0.7], [0.6, 1.0]),
+        ([-0.1, 0.2], [0.0, 0.4]),
+        ([-5.0, 9.0], [0.0, 1.0]),
+        (super::UNBOUNDED, [0.0, 1.0]),
+    ] {
+        let found = range(input);
+        let near = found.iter().zip(wanted).all(|(x, y)| (x - y).abs() < 1e-5);
+        assert!(near, "{found:?} for {wanted:?}");
     }
 }

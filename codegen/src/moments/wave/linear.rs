@@ -20,7 +20,8 @@ pub struct Corner {
 ///
 /// For σ ≤ 0.2 periods the piecewise function of the corners within reach (error 3e-7 of the
 /// largest jump), beyond it three harmonics, damped by e^{−2π²k²v}, of the function and of its
-/// square, whose coefficients are computed in f64 when it is built. Exact for a Gaussian.
+/// square, whose coefficients are computed in f64 when it is built. Exact for a Gaussian. Of a signal
+/// that stays between two corners it is the line between them, which is exact for any signal.
 #[derive(Clone, Debug)]
 pub struct LinearWave {
     corners: Vec<Corner>,
@@ -30,6 +31,11 @@ pub struct LinearWave {
 
 /// How many harmonics.
 const HARMONICS: usize = 3;
+
+/// Periods in which corners are looked for where a signal's bounds are known, and how far away these
+/// may lie: numbers beyond have no digits left for the corners.
+const REACHED: f32 = 2.0;
+const FARTHEST: f32 = 1024.0;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Series {
@@ -122,6 +128,29 @@ impl LinearWave {
         Piecewise::straight(offset, slope, knots.collect())
     }
 
+    /// The whole periods before a range that reaches two periods at most. Where it ends at a jump, nobody
+    /// knows on which side of it a signal is that may be next to its bound.
+    fn start(&self, [low, high]: [f32; 2]) -> Option<f32> {
+        let start = low.floor();
+        let is_near = start.abs() < FARTHEST && high - start <= REACHED;
+        let ends = |corner: &Corner| {
+            let apart = fraction_of(high - corner.at);
+            corner.before != corner.after && apart.min(1.0 - apart) < 1e-5
+        };
+        (is_near && !self.corners.iter().any(ends)).then_some(start)
+    }
+
+    /// The value at 0 and the slope of the line that a range lies on, if no corner is inside it.
+    fn line(&self, range: [f32; 2]) -> Option<[f32; 2]> {
+        let start = self.start(range)?;
+        let [from, to] = range.map(|end| end - start);
+        let count = self.corners.len() as isize;
+        let last = (-count..3 * count).rfind(|&i| self.corner(i).at <= from)?;
+        let (corner, slope) = (self.corner(last), self.slope(last));
+        let offset = corner.after - slope * (corner.at + start);
+        (self.corner(last + 1).at >= to).then_some([offset, slope])
+    }
+
     /// The damped harmonics: mean, slope, curvature and third of the function, and the mean of its
     /// square.
     fn harmonics<'b>(&self, u: Float<'b>, variance: Float<'b>) -> [Float<'b>; 5] {
@@ -154,6 +183,10 @@ impl LinearWave {
         }
         sums
     }
+}
+
+fn fraction_of(x: f32) -> f32 {
+    x - x.floor()
 }
 
 impl Series {
@@ -214,6 +247,17 @@ impl<'b> Transfer<'b> for LinearWave {
     }
 
     fn moments(&self, x: &Gaussian<'b>) -> Moments<'b> {
+        let [least, most] = <Self as Transfer<'b>>::range(self, x.range);
+        if let Some([offset, slope]) = self.line(x.range) {
+            let zero = x.mean.literal(0.0);
+            return Moments {
+                mean: (x.mean * slope + offset).clamp(least, most),
+                slope: x.mean.literal(slope),
+                curvature: zero,
+                third: zero,
+                distortion: zero,
+            };
+        }
         let u = fraction(x.mean);
         let near = self.unrolled(u.builder(), -1.0, 2.0).moments(&Gaussian {
             mean: u,
@@ -224,9 +268,8 @@ impl<'b> Transfer<'b> for LinearWave {
         // Here the squares are far apart: nothing cancels.
         let distortion = (square - mean.square() - (slope * x.sd).square()).max(0.0);
         let narrow = x.sd.lt(CROSSOVER);
-        let [low, high] = self.range(UNBOUNDED);
         Moments {
-            mean: narrow.select(near.mean, mean).clamp(low, high),
+            mean: narrow.select(near.mean, mean).clamp(least, most),
             slope: narrow.select(near.slope, slope),
             curvature: narrow.select(near.curvature, curvature),
             third: narrow.select(near.third, third),
@@ -234,11 +277,33 @@ impl<'b> Transfer<'b> for LinearWave {
         }
     }
 
-    fn range(&self, _: [f32; 2]) -> [f32; 2] {
-        let values = (self.corners.iter()).flat_map(|corner| [corner.before, corner.after]);
-        values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], y| {
-            [low.min(y), high.max(y)]
-        })
+    fn range(&self, input: [f32; 2]) -> [f32; 2] {
+        let hull = |values: &mut dyn Iterator<Item = f32>| {
+            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], y| {
+                [low.min(y), high.max(y)]
+            })
+        };
+        let of = |corner: &Corner| [corner.before, corner.after];
+        let all = hull(&mut self.corners.iter().flat_map(of));
+        let Some(start) = self.start(input) else {
+            return all;
+        };
+        let [from, to] = input.map(|end| end - start);
+        let count = self.corners.len() as isize;
+        let corners = (-count..3 * count).map(|i| (i, self.corner(i)));
+        // Each stretch between two corners, as far as it is reached.
+        let mut ends = corners
+            .filter(|(_, corner)| corner.at <= to)
+            .flat_map(|(i, corner)| {
+                let end = self.corner(i + 1).at;
+                let line = |x: f32| corner.after + self.slope(i) * (x - corner.at);
+                let reached = (end >= from).then(|| [corner.at.max(from), end.min(to)].map(line));
+                reached.into_iter().flatten()
+            });
+        let [low, high] = hull(&mut ends);
+        // Rounding must not push what is reached outside.
+        let slack = 1e-6 * (all[1] - all[0]);
+        [(low - slack).max(all[0]), (high + slack).min(all[1])]
     }
 
     fn period(&self) -> Option<f32> {
