@@ -55,15 +55,23 @@ impl Measured {
     }
 }
 
-/// |mean of `auto` − mean of the truth| over a frame of pixels of 64 wavelengths, the largest of the
-/// components.
+/// |mean of `auto` − mean of the truth| over a frame of pixels of 64 wavelengths, as a display shows
+/// them; the largest of the components. The means are those of the values themselves: shown one by
+/// one, truths of a mean of 0 are off by what their own noise is above 0.
 pub fn far_bias(texture: &Texture, wavelength: f64, effort: Effort) -> f64 {
     let frame = pixels(&[FAR, FAR], wavelength, effort);
-    let truth = mean(&truths(texture, effort.samples, &frame).map(shown));
-    let far = shown(evaluate(texture, Method::Auto, 0, &frame));
-    let average = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
-    let biases = (far.iter().zip(&truth)).map(|(a, b)| (average(a) - average(b)).abs());
-    biases.fold(0.0, f64::max)
+    let exact = |values: Vec<Vec<f32>>| -> Vec<Vec<f64>> {
+        let of = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
+        values.into_iter().map(of).collect()
+    };
+    let truth = mean(&truths(texture, effort.samples, &frame).map(exact));
+    let far = exact(evaluate(texture, Method::Auto, 0, &frame));
+    let average = |values: &[Vec<f64>]| {
+        let of = |values: &Vec<f64>| (values.iter().sum::<f64>() / values.len() as f64) as f32;
+        shown(vec![values.iter().map(of).collect()]).swap_remove(0)
+    };
+    let biases = average(&far).into_iter().zip(average(&truth));
+    biases.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 /// The error of `auto` over a band, relative to the spread of the values there; `None` where it is

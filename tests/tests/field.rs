@@ -121,7 +121,7 @@ const GRAPHS: [(&str, [f64; 2], &str); 23] = [
     ),
     (
         "random colours of the sum of the numbers of two things",
-        [0.01, 0.06],
+        [0.01, 0.07],
         r#""s":{"type":"add","inputs":{"in1":{"node":"id"},"in2":{"node":"cell"}}},"o":{"type":"randomcolor","inputs":{"in":{"node":"s"}}}"#,
     ),
     (

@@ -42,7 +42,7 @@ use settings::Change;
 use std::sync::{Arc, LazyLock, PoisonError, RwLock};
 use suspects::{beginnings, ends, readers, repeated, steady};
 use truth::{BIASED, Errors, GLANCE, LOOK, Truth, components, look, values};
-use verdict::{NOTICEABLE, TOLERANCE, Verdict, where_better};
+use verdict::{BETTER_BY_POINTS, NOTICEABLE, TOLERANCE, Verdict, where_better};
 
 /// Errors that are worth points: somewhat less than what an output may be off, so that bands beside
 /// each other are filtered alike.
@@ -318,7 +318,8 @@ fn decide(
         let maps = candidate(facts);
         let mut everywhere = true;
         facts.repeated.retain(|node, repeated| {
-            repeated.within = where_better(&maps.errors, &best.errors, &readers[*node], NOTICEABLE);
+            let noticed = [NOTICEABLE, 1.0];
+            repeated.within = where_better(&maps.errors, &best.errors, &readers[*node], noticed);
             everywhere &= repeated.within == Bands::ALL;
             repeated.within != 0
         });
@@ -355,7 +356,8 @@ fn decide(
         let points = candidate(facts);
         let mut everywhere = true;
         added.retain(|node, sampling| {
-            let better = where_better(&points.errors, &best.errors, &readers[*node], SAMPLED);
+            let noticed = [SAMPLED, BETTER_BY_POINTS];
+            let better = where_better(&points.errors, &best.errors, &readers[*node], noticed);
             everywhere &= better == Bands::ALL;
             match best.sampled.get(node) {
                 // Few points are enough elsewhere.
@@ -373,7 +375,10 @@ fn decide(
         if !added.is_empty() {
             facts.sampled.extend(added);
             let points = if everywhere { points } else { candidate(facts) };
-            best = best.or(points, verdict);
+            // They are taken only where they are worth their time.
+            if verdict(&points.errors).improves(verdict(&best.errors)) {
+                best = points;
+            }
             facts.sampled.clone_from(&best.sampled);
         }
     }

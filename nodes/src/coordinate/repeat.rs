@@ -6,9 +6,7 @@ use crate::pattern::separable::phase;
 use crate::port;
 use mipless_codegen::moments::Signal;
 use mipless_codegen::{Bundle, Lower};
-use mipless_graph::{
-    Behaviour, Category, Doc, InputView, Node, NodeSpec, OutputType, Range, Reach, Type,
-};
+use mipless_graph::{Behaviour, Category, Doc, Node, NodeSpec, OutputType, Range, Reach, Type};
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "repeat",
@@ -43,21 +41,14 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
     ],
     output: OutputType::Exactly(Type::Vector2),
     reach: |_| Reach::ANY,
-    class,
+    // Linear within the tile of the centre: what shows it, or reads it where the seam does not fit, has an
+    // edge there.
+    class: |_| Behaviour::Function,
     example: example! { "repeat" => "disc", r##"
     "repeat": { "type": "repeat", "inputs": { "uvtiling": [3, 3] } },
     "disc": { "type": "ramplr", "inputs": { "texcoord": { "node": "repeat" }, "valuer": 1 } }
 "## },
 };
-
-/// Linear within the tile of the centre.
-fn class(inputs: &dyn InputView) -> Behaviour {
-    if inputs.varies("uvtiling") {
-        Behaviour::Product
-    } else {
-        Behaviour::Linear
-    }
-}
 
 pub(super) fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let [texcoord, tiling] = ["texcoord", "uvtiling"].map(|port| lower.bundle(node, port));

@@ -7,8 +7,11 @@ use super::truth::Errors;
 pub(super) const TOLERANCE: f64 = 0.03;
 /// Beyond this an output that is worse than a point is worth samples.
 pub(super) const NOTICEABLE: f64 = 0.01;
-/// By how much samples must be better than a closed form that is merely inexact.
+/// By how much something else must be better than a closed form that is merely inexact, over all bands.
 const BETTER: f64 = 0.7;
+/// The same of points in a band: they are taken in those alone where they are worth their time, so that
+/// a band where nothing helps does not outweigh the others.
+pub(super) const BETTER_BY_POINTS: f64 = 0.85;
 
 /// How bad errors are: in how many bands an output is worse than a point or misses the tolerance,
 /// and the mean of their squares.
@@ -36,7 +39,12 @@ impl Verdict {
         self.worse == 0 && self.off == 0
     }
 
-    /// Whether this is so much better that points are worth their time.
+    /// Whether this is better at all, and nowhere else worse than a point.
+    pub(super) fn improves(self, other: Self) -> bool {
+        self.worse <= other.worse && self.square < other.square
+    }
+
+    /// Whether this is so much better that it is worth its time.
     pub(super) fn beats(self, other: Self) -> bool {
         self.worse < other.worse
             || self.worse == other.worse && self.square < BETTER * BETTER * other.square
@@ -52,13 +60,13 @@ pub(super) fn is_worse(error: f64, point: f64, floor: f64) -> bool {
     error > NOTICEABLE && error > point + floor
 }
 
-/// The bits of the bands in which something else is better for some of the outputs, where their
-/// error is above `noticed`.
+/// The bits of the bands in which something else has less than a share of the errors of some of the
+/// outputs, where these are above `noticed`.
 pub(super) fn where_better(
     other: &Errors,
     closed: &Errors,
     outputs: &[usize],
-    noticed: f64,
+    [noticed, share]: [f64; 2],
 ) -> u32 {
     let better = |band: &usize| {
         let square = |errors: &Errors| {
@@ -68,7 +76,7 @@ pub(super) fn where_better(
         let matters = outputs
             .iter()
             .any(|&output| closed[output][*band] > noticed);
-        matters && square(other) < square(closed)
+        matters && square(other) < share * share * square(closed)
     };
     (0..Bands::COUNT)
         .filter(better)
