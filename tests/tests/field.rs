@@ -13,7 +13,7 @@ const FLOOR: f64 = 0.004;
 /// What people build of `fract`, `floor` and the like of coordinates `u` and `v`, of the ids `id` of
 /// regions and `cell` of cells; the error of `o` that is allowed where a pixel is finest, and
 /// anywhere.
-const GRAPHS: [(&str, [f64; 2], &str); 23] = [
+const GRAPHS: [(&str, [f64; 2], &str); 24] = [
     (
         "stripes by floor and modulo",
         [0.01, 0.02],
@@ -128,6 +128,11 @@ const GRAPHS: [(&str, [f64; 2], &str); 23] = [
         "a wave of a coordinate, in some steps of a noise",
         [0.002, 0.025],
         r#""x":{"type":"multiply","inputs":{"in1":{"node":"u"},"in2":40}},"w":{"type":"sin","inputs":{"in":{"node":"x"}}},"n":{"type":"noise2d","inputs":{"frequency":5,"pivot":0.5}},"p":{"type":"multiply","inputs":{"in1":{"node":"w"},"in2":{"node":"n"}}},"m":{"type":"step","inputs":{"in":{"node":"p"},"edge":0.1}},"o":{"type":"mix","inputs":{"bg":{"node":"n"},"fg":{"node":"w"},"mix":{"node":"m"}}}"#,
+    ),
+    (
+        "coordinates that repeat",
+        [0.02, 0.02],
+        r#""o":{"type":"repeat","inputs":{"uvtiling":[2.5,-3]}}"#,
     ),
 ];
 

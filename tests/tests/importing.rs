@@ -401,6 +401,16 @@ fn circles_and_bombs_end() {
             .iter()
             .any(|(code, ..)| *code == "import-circle")
     );
+    // A nodegraph that is several of itself would branch to the limit of uses, which takes its time.
+    let nested = mtlx(
+        r#"<nodedef name="D" node="n"><input name="in" type="float" value="0"/><output name="out" type="float"/></nodedef>
+           <nodegraph name="G" nodedef="D"><n name="a" type="float"/><n name="b" type="float"/>
+           <add name="c" type="float"><input name="in1" type="float" nodename="a"/><input name="in2" type="float" nodename="b"/></add>
+           <output name="out" type="float" nodename="c"/></nodegraph>
+           <nodegraph name="g"><n name="x" type="float"/><output name="out" type="float" nodename="x"/></nodegraph>"#,
+    );
+    let codes: Vec<_> = said(&nested).iter().map(|(code, ..)| *code).collect();
+    assert!(codes.contains(&"import-circle") && !codes.contains(&"import-limit"));
     let entities = "<?xml version=\"1.0\"?><!DOCTYPE m [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]>\n<materialx version=\"1.39\" name=\"&b;\"/>";
     assert_eq!(
         said(&read(Format::MaterialX, entities, &[], &[]))[0].0,

@@ -162,6 +162,18 @@ impl<'a> Network<'a> {
         if let Some(inner) = self.inner.get(&(scope, node)) {
             return Ok(*inner);
         }
+        // The nodegraphs around the node: one that is among them never ends, and branches on its way.
+        let mut around = Some(scope);
+        while let Some(outer) = around {
+            let Scope {
+                graph: of, user, ..
+            } = &self.scopes[outer];
+            if *of == graph {
+                let message = format!("nodegraph `{}` uses itself", self.tree.get(graph).name);
+                return Err(Refusal::new("import-circle", message));
+            }
+            around = user.as_ref().map(|(outer, ..)| *outer);
+        }
         let depth = self.scopes[scope].depth + 1;
         if depth > DEEPEST {
             let message = format!("nodegraphs use each other more than {DEEPEST} deep");
