@@ -10,7 +10,7 @@ use mipless_graph::{
     Binding, Default as PortDefault, Document, InputEntry, NodeEntry, NodeSpec, OutputType,
     PortSpec, PortType, Reference, Type,
 };
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Why a node cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -271,7 +271,11 @@ impl Builder {
     pub(crate) fn insert(&mut self, entry: NodeEntry, output: &str) -> Result<Reference, Refusal> {
         let key = format!("{} {:?}", entry.ty, entry.inputs);
         let output = output.to_owned();
-        if let Some(node) = self.made.get(&key) {
+        // Shaders that are alike are as many materials.
+        let is_material = self
+            .spec(&entry.ty)
+            .is_some_and(|spec| spec.material().is_some());
+        if let Some(node) = self.made.get(&key).filter(|_| !is_material) {
             return Ok(Reference {
                 node: node.clone(),
                 output,
@@ -320,20 +324,50 @@ impl Builder {
         })
     }
 
+    /// Whether a value is a function of a position in space: it reads one, or stands where one is read.
+    pub(crate) fn is_in_space(&self, value: &Value) -> bool {
+        let nodes = &self.document.body.nodes;
+        let Value::Link(Link {
+            binding: Binding::Node(reference),
+            ..
+        }) = value
+        else {
+            return false;
+        };
+        let mut open = vec![&reference.node];
+        let mut seen = FxHashSet::default();
+        while let Some(name) = open.pop() {
+            let Some(node) = nodes.get(name).filter(|_| seen.insert(name)) else {
+                continue;
+            };
+            let unread =
+                |port: &PortSpec| port.name == "position" && !node.inputs.contains_key(port.name);
+            let spec = self.spec(&node.ty);
+            if node.ty == "position" || spec.is_some_and(|spec| spec.inputs.iter().any(unread)) {
+                return true;
+            }
+            open.extend(node.inputs.values().filter_map(|binding| match binding {
+                Binding::Node(reference) => Some(&reference.node),
+                _ => None,
+            }));
+        }
+        false
+    }
+
+    /// An output of the graph that reads a node.
+    pub(crate) fn read(&mut self, name: &str, reference: Reference) {
+        let outputs = &mut self.document.body.outputs;
+        outputs.insert(name.to_owned(), reference);
+    }
+
     /// An output of the graph: what is no node becomes one.
     pub(crate) fn output(&mut self, name: &str, value: Value) -> Result<(), Refusal> {
         let value = match value {
             Value::Literal(literal) => self.constant(&literal)?,
             Value::Link(Link {
-                binding: Binding::Node(reference),
+                binding: Binding::Node(_),
                 ..
-            }) => {
-                self.document
-                    .body
-                    .outputs
-                    .insert(name.to_owned(), reference);
-                return Ok(());
-            }
+            }) => value,
             link @ Value::Link(_) => self.node("dot", vec![("in".to_owned(), link)], "out")?,
         };
         if let Value::Link(Link {
@@ -341,10 +375,7 @@ impl Builder {
             ..
         }) = value
         {
-            self.document
-                .body
-                .outputs
-                .insert(name.to_owned(), reference);
+            self.read(name, reference);
         }
         Ok(())
     }

@@ -225,12 +225,46 @@ impl Reader<'_> {
                 self.tree.get_mut(input).set("nodegraph", graph);
                 self.tree.get_mut(input).set("output", output);
             }
+            // What the numbers of a picture are multiplied by.
+            for (port, ty, keys) in FACTORS {
+                if let Some(factor) = material.at(keys) {
+                    let input = self.add(id, "input", port, ty, factor);
+                    let value = match &factor.value {
+                        Content::List(items) => {
+                            let parts = items.iter().take(3).map(|item| self.scalar(item));
+                            parts.collect::<Vec<_>>().join(", ")
+                        }
+                        _ => self.scalar(factor),
+                    };
+                    self.tree.get_mut(input).set("value", &value);
+                }
+            }
             let owner = self.add(Tree::ROOT, "surfacematerial", name, "material", material);
             let input = self.add(owner, "input", "surfaceshader", "surfaceshader", material);
             self.tree.get_mut(input).set("nodename", &shader);
         }
     }
 }
+
+/// The factors of a material, by the names that the shader has for them.
+const FACTORS: [(&str, &str, &[&str]); 4] = [
+    (
+        "base_color_factor",
+        "color3",
+        &["pbrMetallicRoughness", "baseColorFactor"],
+    ),
+    (
+        "metallic",
+        "float",
+        &["pbrMetallicRoughness", "metallicFactor"],
+    ),
+    (
+        "roughness",
+        "float",
+        &["pbrMetallicRoughness", "roughnessFactor"],
+    ),
+    ("emissive_factor", "color3", &["emissiveFactor"]),
+];
 
 fn text_of<'a>(json: &'a Json, key: &str) -> &'a str {
     json.get(key).and_then(Json::text).unwrap_or("")

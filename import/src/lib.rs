@@ -38,6 +38,7 @@ mod materialx;
 mod matrix;
 mod place;
 mod rule;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod value;

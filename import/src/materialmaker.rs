@@ -9,14 +9,16 @@ mod parameter;
 
 use crate::build::{Builder, Refusal};
 use crate::json::Json;
+use crate::materialx::literal;
 use crate::place::{Findings, Place, Source};
 use crate::rule::{Expr, Rules};
+use crate::surface;
 use crate::value::{Literal, Value};
 use crate::{Imported, Options, Output};
 use call::NodeCall;
 use code::Code;
 use graph::Graphs;
-use mipless_graph::{Diagnostic, NodeSpec, Type};
+use mipless_graph::{Diagnostic, NodeSpec, Reference, Type};
 use rustc_hash::FxHashMap;
 use std::collections::HashMap;
 use std::sync::OnceLock;
@@ -36,6 +38,14 @@ const PORTS: [(&str, &str, bool); 9] = [
     ("depth", "f", false),
     ("opacity", "f", false),
     ("sss", "f", false),
+];
+
+/// What the material multiplies its ports by: inputs of the shader, and its parameters.
+const FACTORS: [(&str, &str); 4] = [
+    ("albedo_color", "albedo_color"),
+    ("metallic_scale", "metallic"),
+    ("roughness_scale", "roughness"),
+    ("emission_energy", "emission_energy"),
 ];
 
 /// How deep nodes may follow each other, and how often they are looked at: a warp of a warp asks
@@ -153,21 +163,26 @@ fn on_a_large_stack(name: &str, text: &str, specs: &[&'static NodeSpec]) -> Impo
         count: 0,
     };
     let mut outputs = Vec::new();
+    let mut given = Vec::new();
     for (port, (name, ty, encoded)) in PORTS.iter().enumerate() {
         let Some(source) = maker.graphs.source(0, &material, port) else {
             continue;
         };
-        let value = maker.output(&source, ty, *encoded);
-        let made = value.and_then(|value| maker.builder.output(name, value));
+        let made = maker.output(&source, ty, *encoded);
         let loads = made.is_ok();
-        if let Err(refusal) = made {
-            maker.refuse(&place, &refusal);
+        match made {
+            Ok(value) => given.push(((*name).to_owned(), value)),
+            Err(refusal) => maker.refuse(&place, &refusal),
         }
         outputs.push(Output {
             name: (*name).to_owned(),
             source: format!("{material}/{name}"),
             loads,
         });
+    }
+    if let Err(refusal) = maker.material(&material, &place, given) {
+        maker.refuse(&place, &refusal);
+        outputs.iter_mut().for_each(|output| output.loads = false);
     }
     if outputs.is_empty() {
         let message = "nothing is connected to the material";
@@ -216,6 +231,60 @@ impl Maker<'_> {
             let diagnostic = Diagnostic::error(refusal.code, refusal.message.clone());
             self.findings.say(place, diagnostic);
         }
+    }
+
+    /// The outputs that show what is connected to the material: parts of a surface, where it has them.
+    fn material(
+        &mut self,
+        name: &str,
+        place: &Place,
+        mut given: Vec<(String, Value)>,
+    ) -> Result<(), Refusal> {
+        let shader =
+            surface::shader("material").filter(|_| self.builder.spec(surface::NODE).is_some());
+        let connected = given.clone();
+        for (input, parameter) in FACTORS {
+            let Some(json) = self.graphs.parameter(0, name, parameter) else {
+                continue;
+            };
+            let placeholder = Builder::new(&[]);
+            let mut builder = std::mem::replace(&mut self.builder, placeholder);
+            let value = parameter::value(self, &mut builder, 0, json, 0);
+            self.builder = builder;
+            let value = match value? {
+                // A colour is one of a display.
+                Value::Literal(color @ Literal::Numbers(Type::Color3, _)) => {
+                    Value::Literal(literal::linear(color, "srgb_texture")?)
+                }
+                value => value,
+            };
+            given.push((input.to_owned(), value));
+        }
+        self.builder.place = Some(place.clone());
+        surface::NODE.clone_into(&mut self.builder.hint);
+        let made = match shader {
+            Some(shader) if !connected.is_empty() => {
+                Some((shader, shader.node(&mut self.builder, &given)?))
+            }
+            _ => None,
+        };
+        for (name, value) in connected {
+            let part = made.as_ref().and_then(|(shader, node)| {
+                let (part, shown) = shader.part(&name).filter(|_| name != "normal")?;
+                Some((shown.to_owned(), part.to_owned(), node.clone()))
+            });
+            match part {
+                Some((shown, part, node)) => {
+                    let part = Reference {
+                        output: part,
+                        ..node
+                    };
+                    self.builder.read(&shown, part);
+                }
+                None => self.builder.output(&name, value)?,
+            }
+        }
+        Ok(())
     }
 
     /// What an output of the material shows.

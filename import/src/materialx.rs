@@ -5,9 +5,10 @@ pub(crate) mod literal;
 pub(crate) mod network;
 mod read;
 mod root;
+mod surfaces;
 mod upgrade;
 
-use crate::build::Builder;
+use crate::build::{Builder, Refusal};
 use crate::element::Tree;
 use crate::place::{Findings, Place};
 use crate::rule::Rules;
@@ -16,6 +17,7 @@ use mipless_graph::Diagnostic;
 use network::{Library, Network};
 use read::Reader;
 use std::sync::OnceLock;
+use surfaces::Surfaces;
 
 /// What MaterialX's nodes become.
 const RULES: &str = include_str!("materialx/rules.txt");
@@ -72,31 +74,46 @@ pub(crate) fn of_tree(tree: Tree, findings: Findings, options: &Options<'_>) -> 
             return Imported::nothing(network.findings);
         }
     };
-    if roots.is_empty() {
+    if roots.outputs.is_empty() && roots.surfaces.is_empty() {
         let message = "the document has no output: no shader of a material, and no nodegraph";
         let diagnostic = Diagnostic::error("import-empty", message);
         network.findings.say(&start, diagnostic);
     }
-    let mut outputs = Vec::with_capacity(roots.len());
-    for root in roots {
+    let mut surfaces = Surfaces::new(&builder, &roots.surfaces);
+    let mut outputs = Vec::with_capacity(roots.outputs.len());
+    for root in roots.outputs {
         let scope = network.scope_of(root.graph);
         let value = network.value(&mut builder, scope, root.element);
-        let place = network.tree.place(root.element);
         let source = network.source_of(scope, root.element);
-        let value = value.and_then(|value| {
-            let made = builder.output(&root.name, value);
-            made.map_err(|refusal| {
-                let diagnostic = Diagnostic::error(refusal.code, refusal.message);
-                network.findings.say(&place, diagnostic);
-            })
-        });
-        outputs.push(Output {
-            name: root.name,
-            source,
-            loads: value.is_ok(),
+        outputs.push(match surfaces.take(&mut network, &builder, &root, &value) {
+            Some(name) => Output {
+                name,
+                source,
+                loads: value.is_ok(),
+            },
+            None => {
+                let name = surfaces.distinct(&builder, root.name);
+                let made = value.and_then(|value| {
+                    let place = network.tree.place(root.element);
+                    let made = builder.output(&name, value);
+                    made.map_err(|refusal| refuse(&mut network, &place, &refusal))
+                });
+                Output {
+                    loads: made.is_ok(),
+                    name,
+                    source,
+                }
+            }
         });
     }
+    surfaces.finish(&mut network, &mut builder, &mut outputs);
     Imported::new(builder, outputs, network.findings)
+}
+
+/// Says why something at a place does not load.
+fn refuse(network: &mut Network<'_>, place: &Place, refusal: &Refusal) {
+    let diagnostic = Diagnostic::error(refusal.code, refusal.message.clone());
+    network.findings.say(place, diagnostic);
 }
 
 /// Whether the version is one of those that are read; what is older becomes 1.39.

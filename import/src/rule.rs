@@ -36,6 +36,28 @@ pub(crate) enum Expr {
     },
 }
 
+impl Expr {
+    /// The inputs that it reads, in the order of the text.
+    pub(crate) fn ports(&self, found: &mut Vec<String>) {
+        match self {
+            Self::Port(name, at) => {
+                found.push(name.clone());
+                at.iter().for_each(|at| at.ports(found));
+            }
+            Self::List(items) => items.iter().for_each(|item| item.ports(found)),
+            Self::Negated(inner) => inner.ports(found),
+            Self::Binary(_, left, right) => {
+                left.ports(found);
+                right.ports(found);
+            }
+            Self::Call { arguments, .. } => {
+                arguments.iter().for_each(|(_, item)| item.ports(found));
+            }
+            Self::Number(_) | Self::Text(_) | Self::Flag(_) | Self::Name(_) | Self::Channel => {}
+        }
+    }
+}
+
 /// Expressions by name.
 #[derive(Debug, Default)]
 pub(crate) struct Rules(HashMap<String, Expr>);
@@ -86,7 +108,6 @@ impl Rules {
     }
 
     /// Every rule.
-    #[cfg(test)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&String, &Expr)> {
         self.0.iter()
     }

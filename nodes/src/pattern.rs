@@ -7,6 +7,7 @@ pub(crate) mod disc;
 pub(crate) mod figure;
 mod gradient;
 pub(crate) mod harmonics;
+mod instances;
 pub(crate) mod measure;
 pub(crate) mod pulse;
 mod ramp;
@@ -46,6 +47,8 @@ room! {
     gradient::ramp_gradient,
     ramp::ramplr,
     ramp::ramptb,
+    rays,
+    scatter with things,
     shape,
     split::splitlr,
     split::splittb,
@@ -53,5 +56,7 @@ room! {
     tiles::tiledcircles,
     tiles::tiledcloverleafs,
     tiles::tiledhexagons,
+    truchet,
     wave,
+    weave,
 }

@@ -9,6 +9,8 @@ mod gabor;
 mod phasor;
 #[path = "sources/random.rs"]
 mod random;
+#[path = "sources/scatter.rs"]
+mod scatter;
 #[path = "sources/spectral.rs"]
 mod spectral;
 #[path = "sources/truth.rs"]

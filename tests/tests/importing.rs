@@ -1,8 +1,8 @@
 //! MaterialX documents, small ones of our own: what each rule makes of them, and what is said of what
 //! cannot be had.
 
-use mipless::{CheckOptions, NoFiles, Texture};
-use mipless_import::Format;
+use mipless::{CheckOptions, Footprint, Method, NoFiles, Options, Texture};
+use mipless_import::{Format, Imported};
 use mipless_tests::document::{at, close, mtlx, read, said, texture, value, wrapped};
 use std::fmt::Write as _;
 
@@ -213,7 +213,17 @@ fn the_inputs_of_a_material_s_shader_are_the_outputs() {
             ("specular_roughness", "s/specular_roughness")
         ]
     );
-    close(&at(&imported, [0.5; 2]), &[1.0, 0.0, 0.0, 0.25]);
+    // All parts of the model are outputs of the graph.
+    let texture = texture(&imported);
+    let parts: Vec<&str> = (texture.outputs().iter())
+        .map(|output| output.name.as_str())
+        .collect();
+    assert!(
+        parts.contains(&"metalness") && parts.contains(&"normal"),
+        "{parts:?}"
+    );
+    close(&part(&imported, "base_color"), &[1.0, 0.0, 0.0]);
+    close(&part(&imported, "specular_roughness"), &[0.25]);
     let two = body.to_owned()
         + &body
             .replace("\"s\"", "\"s2\"")
@@ -221,6 +231,109 @@ fn the_inputs_of_a_material_s_shader_are_the_outputs() {
             .replace("name=\"g\"", "name=\"h\"");
     let imported = mtlx(&two);
     assert_eq!(imported.outputs[2].name, "s2_base_color");
+    close(&part(&imported, "s2_specular_roughness"), &[0.25]);
+}
+
+/// The components of an output in the middle.
+fn part(imported: &Imported, name: &str) -> Vec<f32> {
+    let texture = texture(imported).with_outputs(&[name]);
+    let options = Options {
+        method: Method::Point,
+        ..Options::default()
+    };
+    let place = Footprint {
+        uv: [0.5; 2],
+        ..Footprint::default()
+    };
+    let values = texture.evaluator(&options).evaluate(&[place]);
+    values.into_iter().map(|component| component[0]).collect()
+}
+
+/// A document of one shader with its inputs, and of its material.
+fn shaded(category: &str, inputs: &str) -> String {
+    format!(
+        r#"<{category} name="s" type="surfaceshader">{inputs}</{category}>
+           <surfacematerial name="m" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/></surfacematerial>"#
+    )
+}
+
+#[test]
+fn shaders_are_surfaces_with_their_own_defaults_and_weights() {
+    let input = |name: &str, ty: &str, value: &str| {
+        format!(r#"<input name="{name}" type="{ty}" value="{value}"/>"#)
+    };
+    let standard = mtlx(&shaded(
+        "standard_surface",
+        &(input("base", "float", "0.5")
+            + &input("base_color", "color3", "1, 0.5, 0")
+            + &input("emission_color", "color3", "1, 0, 0")
+            + &input("opacity", "color3", "1, 0.5, 0")),
+    ));
+    close(&part(&standard, "base_color"), &[0.5, 0.25, 0.0]);
+    // The shader's own default, which is not the node's.
+    close(&part(&standard, "specular_roughness"), &[0.2]);
+    // Nothing shines by a weight of 0.
+    close(&part(&standard, "emission_color"), &[0.0; 3]);
+    close(&part(&standard, "opacity"), &[0.5]);
+    let open = mtlx(&shaded(
+        "open_pbr_surface",
+        &input("base_metalness", "float", "0.75"),
+    ));
+    close(&part(&open, "base_metalness"), &[0.75]);
+    let gltf = mtlx(&shaded(
+        "gltf_pbr",
+        &(input("alpha", "float", "0.25")
+            + &input("emissive", "color3", "0.5, 0.5, 0.5")
+            + &input("emissive_strength", "float", "4")),
+    ));
+    close(&part(&gltf, "alpha"), &[0.25]);
+    close(&part(&gltf, "emissive"), &[2.0; 3]);
+    let preview = mtlx(&shaded(
+        "UsdPreviewSurface",
+        &input("diffuseColor", "color3", "0.1, 0.2, 0.3"),
+    ));
+    close(&part(&preview, "diffuseColor"), &[0.1, 0.2, 0.3]);
+}
+
+#[test]
+fn what_a_surface_lacks_is_an_output_of_its_own() {
+    let imported = mtlx(&shaded(
+        "standard_surface",
+        r#"<input name="coat" type="float" value="0.5"/><input name="sheen" type="float" value="0"/>
+<input name="specular_rotation" type="float" value="0.125"/><input name="metalness" type="float" value="1"/>"#,
+    ));
+    assert!(imported.is_complete());
+    // What is as it is anyway needs no note.
+    assert_eq!(
+        said(&imported),
+        [
+            ("import-approximated", 3, "/s/coat"),
+            ("import-approximated", 4, "/s/specular_rotation")
+        ]
+    );
+    close(&part(&imported, "coat"), &[0.5]);
+    close(&part(&imported, "specular_rotation_input"), &[0.125]);
+    close(&part(&imported, "metalness"), &[1.0]);
+}
+
+#[test]
+fn a_displacement_is_the_height_of_its_material() {
+    let imported = mtlx(
+        r#"<nodegraph name="g"><ramplr name="n" type="float"><input name="valuer" type="float" value="1"/></ramplr>
+             <output name="out" type="float" nodename="n"/></nodegraph>
+           <gltf_pbr name="s" type="surfaceshader"/>
+           <displacement name="d" type="displacementshader"><input name="displacement" type="float" nodegraph="g" output="out"/>
+             <input name="scale" type="float" value="2"/></displacement>
+           <surfacematerial name="m" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s"/>
+             <input name="displacementshader" type="displacementshader" nodename="d"/></surfacematerial>"#,
+    );
+    close(&part(&imported, "displacement"), &[1.0]);
+    // A slope of 2 turns the normal.
+    let length = 5.0f32.sqrt();
+    close(
+        &part(&imported, "normal"),
+        &[-2.0 / length, 0.0, 1.0 / length],
+    );
 }
 
 #[test]

@@ -64,7 +64,15 @@ fn a_gltf_document_is_materialx_in_json() {
       "materials": [ { "name": "m", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "extensions": { "KHR_texture_procedurals": { "index": 0, "output": "out" } } } } } ] }"#;
     let imported = read(Format::Gltf, text, &[], &[]);
     assert_eq!(imported.outputs[0].name, "base_color");
-    close(&at(&imported, [0.5, 0.0]), &[0.25, 0.125, 0.5]);
+    // The metal and the roughness are those of a material that does not say them.
+    let values = at(&imported, [0.5, 0.0]);
+    close(&values[..5], &[0.25, 0.125, 0.5, 1.0, 1.0]);
+    let tinted = text.replace(
+        "\"pbrMetallicRoughness\": {",
+        "\"pbrMetallicRoughness\": { \"baseColorFactor\": [1, 0.5, 0, 1], \"metallicFactor\": 0.25,",
+    );
+    let values = at(&read(Format::Gltf, &tinted, &[], &[]), [0.5, 0.0]);
+    close(&values[..4], &[0.25, 0.0625, 0.0, 0.25]);
     let wrong = read(
         Format::Gltf,
         &text.replace("\"node\": 2", "\"node\": 7"),

@@ -2,19 +2,96 @@
 
 use super::bind;
 use super::expand::{Function, Functions};
-use super::network::{Element, Entry, Holds, Network};
+use super::network::{Element, Entry, Holds as Held, Network};
+use super::shader::{Holds, Written};
 use std::fmt::Write as _;
 
-/// A document of one nodegraph, after the definitions that it uses.
-pub(super) fn document(name: &str, main: &Network, functions: &Functions) -> String {
+/// A document of one nodegraph, after the definitions that it uses and before the shaders that read it.
+pub(super) fn document(
+    name: &str,
+    main: &Network,
+    functions: &Functions,
+    shaders: &[Written],
+) -> String {
     let mut text = "<?xml version=\"1.0\"?>\n".to_owned();
     text += "<materialx version=\"1.39\" colorspace=\"lin_rec709\">\n";
     for function in &functions.all {
         definition(&mut text, function);
     }
-    graph(&mut text, &bind::name(name), None, main);
+    let name = bind::name(name);
+    // What is called as a shader is may not be the nodegraph's name as well.
+    let is_taken = shaders.iter().any(|shader| shader.name == name);
+    let name = if is_taken {
+        format!("{name}_graph")
+    } else {
+        name
+    };
+    if !main.outputs.is_empty() {
+        graph(&mut text, &name, None, main);
+    }
+    for shader in shaders {
+        material(&mut text, &name, main, shader);
+    }
     text += "</materialx>\n";
     text
+}
+
+/// A shader with its displacement, and the material that it is of.
+fn material(text: &mut String, graph: &str, main: &Network, shader: &Written) {
+    let displacement = format!("{}_displacement", shader.name);
+    let parts = [
+        (
+            &shader.name,
+            shader.category.as_str(),
+            "surfaceshader",
+            &shader.inputs,
+        ),
+        (
+            &displacement,
+            "displacement",
+            "displacementshader",
+            &shader.displacement,
+        ),
+    ];
+    let mut used = Vec::new();
+    for (name, category, ty, inputs) in parts {
+        if inputs.is_empty() && category == "displacement" {
+            continue;
+        }
+        used.push((name, ty));
+        line(
+            text,
+            1,
+            &format!(
+                "<{category}{}>",
+                attributes(&[("name", name), ("type", ty)])
+            ),
+        );
+        for (name, ty, holds) in inputs {
+            let mut own = vec![("name", name.as_str())];
+            match holds {
+                Holds::Value(value) => own.extend([("type", ty.as_str()), ("value", value)]),
+                Holds::Output(index) => {
+                    let output = &main.outputs[*index];
+                    own.extend([
+                        ("type", ty.as_str()),
+                        ("nodegraph", graph),
+                        ("output", &output.name),
+                    ]);
+                }
+            }
+            line(text, 2, &format!("<input{} />", attributes(&own)));
+        }
+        line(text, 1, &format!("</{category}>"));
+    }
+    let name = format!("{}_material", shader.name);
+    let own = [("name", name.as_str()), ("type", "material")];
+    line(text, 1, &format!("<surfacematerial{}>", attributes(&own)));
+    for (node, ty) in used {
+        let own = [("name", ty), ("type", ty), ("nodename", node)];
+        line(text, 2, &format!("<input{} />", attributes(&own)));
+    }
+    line(text, 1, "</surfacematerial>");
 }
 
 /// A node that the document defines itself.
@@ -103,9 +180,9 @@ fn node(text: &mut String, element: &Element) {
 
 fn entry(text: &mut String, depth: usize, tag: &str, entry: &Entry) {
     let holds = match &entry.holds {
-        Holds::Value(value) => ("value", value.as_str()),
-        Holds::Node(name) => ("nodename", name.as_str()),
-        Holds::Interface(name) => ("interfacename", name.as_str()),
+        Held::Value(value) => ("value", value.as_str()),
+        Held::Node(name) => ("nodename", name.as_str()),
+        Held::Interface(name) => ("interfacename", name.as_str()),
     };
     let mut own = vec![
         ("name", entry.name.as_str()),

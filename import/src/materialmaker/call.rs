@@ -125,7 +125,7 @@ impl NodeCall<'_, '_> {
 }
 
 /// What parameters hold that documents of older versions do not name.
-const DEFAULTS: [(&str, &str, f64); 12] = [
+const DEFAULTS: [(&str, &str, f64); 18] = [
     ("warp", "mode", 0.0),
     ("mirror", "flip_sides", 0.0),
     ("mirror", "offset", 0.0),
@@ -138,6 +138,12 @@ const DEFAULTS: [(&str, &str, f64); 12] = [
     ("normal_map", "param1", 1.0),
     ("noise", "density", 0.5),
     ("kaleidoscope", "offset", 0.0),
+    ("tiler", "scale_x", 1.0),
+    ("tiler", "scale_y", 1.0),
+    ("tiler", "fixed_offset", 0.0),
+    ("tiler", "value", 0.0),
+    ("tiler", "overlap", 1.0),
+    ("tiler", "select_inputs", 0.0),
 ];
 
 impl Call for NodeCall<'_, '_> {

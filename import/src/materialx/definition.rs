@@ -145,7 +145,7 @@ impl Definitions {
 }
 
 /// A line of the table.
-fn parse(line: &str) -> Definition {
+pub(crate) fn parse(line: &str) -> Definition {
     let (left, right) = line.split_once(" -> ").unwrap_or((line, ""));
     let mut words = left.split_whitespace();
     let mut word = || words.next().unwrap_or("").to_owned();

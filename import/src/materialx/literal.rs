@@ -113,7 +113,10 @@ pub(crate) fn parse(text: &str, ty: &str) -> Result<Literal, Refusal> {
         .split([',', ' ', '\n', '\t', '\r'])
         .filter(|word| !word.is_empty())
     {
-        match word.parse::<f64>() {
+        // As MaterialX's own reader, which stops at a second point: `0.5.0` is 0.5.
+        let second = word.match_indices('.').nth(1);
+        let read = second.map_or(word, |(at, _)| &word[..at]);
+        match read.parse::<f64>() {
             Ok(number) if (number as f32).is_finite() => numbers.push(number),
             Ok(_) => return wrong("a number is not finite"),
             Err(_) => return wrong("a number is wanted"),

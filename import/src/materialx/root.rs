@@ -4,6 +4,7 @@
 use super::network::Network;
 use crate::build::Refusal;
 use crate::element::{Id, Tree};
+use crate::surface::{self, Shader};
 use mipless_graph::{Diagnostic, Type};
 use rustc_hash::FxHashSet;
 
@@ -15,6 +16,33 @@ pub(crate) struct Root {
     pub(crate) graph: Id,
     /// An `<input>` of a shader or an `<output>`.
     pub(crate) element: Id,
+    /// The shader of a surface that it is an input of, as its place in [`Roots::surfaces`].
+    pub(crate) surface: Option<usize>,
+}
+
+/// A shader that becomes the node `surface`.
+#[derive(Debug)]
+pub(crate) struct Surface {
+    pub(crate) shader: &'static Shader,
+    pub(crate) element: Id,
+    /// What the names of outputs begin with, where there are several shaders.
+    pub(crate) prefix: String,
+}
+
+/// Everything that is asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Roots {
+    pub(crate) outputs: Vec<Root>,
+    pub(crate) surfaces: Vec<Surface>,
+}
+
+/// A shader of a document.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    graph: Id,
+    node: Id,
+    /// The material that it is of.
+    material: Option<Id>,
 }
 
 /// Types that shaders have and textures have not.
@@ -34,19 +62,21 @@ const OPAQUE: [&str; 12] = [
 ];
 
 /// Everything that is asked for; `material` is the name of a material, a shader or a nodegraph.
-pub(crate) fn find(
-    network: &mut Network<'_>,
-    material: Option<&str>,
-) -> Result<Vec<Root>, Refusal> {
+pub(crate) fn find(network: &mut Network<'_>, material: Option<&str>) -> Result<Roots, Refusal> {
     let tree = &network.tree;
-    let mut shaders: Vec<(Id, Id)> = Vec::new();
+    let mut shaders: Vec<Found> = Vec::new();
     let mut graphs: Vec<Id> = Vec::new();
     let is_wanted = |id: Id| material.is_none_or(|name| tree.get(id).name == name);
     for id in tree.children(Tree::ROOT) {
         match tree.get(id).tag.as_str() {
             "surfacematerial" | "volumematerial" if is_wanted(id) => {
                 for input in tree.tagged(id, "input") {
-                    shaders.extend(shader(tree, Tree::ROOT, input));
+                    let found = shader(tree, Tree::ROOT, input);
+                    shaders.extend(found.map(|(graph, node)| Found {
+                        graph,
+                        node,
+                        material: Some(id),
+                    }));
                 }
             }
             "nodegraph" if material.is_some() && is_wanted(id) => graphs.push(id),
@@ -58,7 +88,11 @@ pub(crate) fn find(
         && graphs.is_empty()
     {
         match tree.child(Tree::ROOT, name) {
-            Some(id) => shaders.push((Tree::ROOT, id)),
+            Some(node) => shaders.push(Found {
+                graph: Tree::ROOT,
+                node,
+                material: None,
+            }),
             None => {
                 let known: Vec<&str> = (tree.tagged(Tree::ROOT, "surfacematerial"))
                     .map(|id| tree.get(id).name.as_str())
@@ -68,34 +102,19 @@ pub(crate) fn find(
             }
         }
     }
-    shaders.dedup();
     let mut seen = FxHashSet::default();
-    shaders.retain(|shader| seen.insert(*shader));
-    let several = shaders.len() > 1;
-    let mut roots = Vec::new();
+    shaders.retain(|shader| seen.insert(shader.node));
     let mut dropped = Vec::new();
-    for (graph, id) in shaders {
-        for input in tree.tagged(id, "input") {
-            let element = tree.get(input);
-            let own = &element.name;
-            if !is_texture(element.attribute("type").unwrap_or("")) {
-                dropped.push((input, format!("`{own}` of a shader is no texture")));
-                continue;
-            }
-            roots.push(Root {
-                name: if several {
-                    format!("{}_{own}", tree.get(id).name)
-                } else {
-                    own.clone()
-                },
-                graph,
-                element: input,
-            });
-        }
-    }
+    let (mut roots, surfaces) = inputs(tree, &shaders, &mut dropped);
     if roots.is_empty() && material.is_none() {
         graphs.extend(shown_graphs(tree));
     }
+    // Where nodegraphs are shown, shaders without inputs are not.
+    let surfaces = if graphs.is_empty() {
+        surfaces
+    } else {
+        Vec::new()
+    };
     let several = graphs.len() > 1;
     for graph in graphs {
         for output in tree.tagged(graph, "output") {
@@ -112,6 +131,7 @@ pub(crate) fn find(
                 },
                 graph,
                 element: output,
+                surface: None,
             });
         }
     }
@@ -123,7 +143,73 @@ pub(crate) fn find(
             .say(&place, Diagnostic::note("import-left-out", note));
     }
     distinct(&mut roots);
-    Ok(roots)
+    Ok(Roots {
+        outputs: roots,
+        surfaces,
+    })
+}
+
+/// The inputs of shaders; those that are no textures are dropped. A displacement belongs to the surface
+/// of its material.
+fn inputs(
+    tree: &Tree,
+    shaders: &[Found],
+    dropped: &mut Vec<(Id, String)>,
+) -> (Vec<Root>, Vec<Surface>) {
+    let known = |found: &Found| surface::shader(&tree.get(found.node).tag);
+    let is_displacement = |found: &Found| tree.get(found.node).tag == "displacement";
+    // The shader whose surface an input belongs to.
+    let owner = |found: &Found| {
+        if known(found).is_some() || !is_displacement(found) {
+            return *found;
+        }
+        let beside = |other: &&Found| other.material == found.material && known(other).is_some();
+        (shaders.iter())
+            .find(|other| found.material.is_some() && beside(other))
+            .copied()
+            .unwrap_or(*found)
+    };
+    let mut owners: Vec<Id> = shaders.iter().map(|found| owner(found).node).collect();
+    owners.sort_unstable();
+    owners.dedup();
+    let several = owners.len() > 1;
+    let prefix = |node: Id| match several {
+        true => format!("{}_", tree.get(node).name.replace([':', '/'], "_")),
+        false => String::new(),
+    };
+    let mut surfaces: Vec<Surface> = Vec::new();
+    for found in shaders {
+        surfaces.extend(known(found).map(|shader| Surface {
+            shader,
+            element: found.node,
+            prefix: prefix(found.node),
+        }));
+    }
+    let mut roots = Vec::new();
+    for found in shaders {
+        let owner = owner(found);
+        let surface = surfaces
+            .iter()
+            .position(|surface| surface.element == owner.node);
+        for input in tree.tagged(found.node, "input") {
+            let element = tree.get(input);
+            let own = &element.name;
+            let ty = element.attribute("type").unwrap_or("");
+            if !is_texture(ty) {
+                dropped.push((input, format!("`{own}` of a shader is no texture")));
+                continue;
+            }
+            // A displacement along the normal is a height; others are signals of their own.
+            let is_part = !is_displacement(found) || ty == "float";
+            roots.push(Root {
+                name: format!("{}{own}", prefix(owner.node)),
+                graph: found.graph,
+                element: input,
+                surface: surface.filter(|_| is_part),
+            });
+        }
+    }
+    (roots, surfaces)
 }
 
 /// Nodegraphs that show something by themselves, and the document if it has outputs. Functional ones

@@ -14,7 +14,7 @@ use mipless_graph::{Category, Doc, Literal, Node, NodeSpec, OutputType, Range, R
 
 pub(super) static SPEC: NodeSpec = NodeSpec {
     name: "brick",
-    aliases: &["bricks", "brick_texture", "brick_wall", "tiles", "masonry", "weave"],
+    aliases: &["bricks", "brick_texture", "brick_wall", "tiles", "masonry"],
     category: Category::Pattern,
     summary: "A wall of bricks, 1 on their faces and 0 in the joints.",
     doc: Doc {

@@ -91,14 +91,14 @@ pub(crate) struct Place<'b> {
 }
 
 /// A constant and terms, from parameters.
-type Sum = dyn for<'b> Fn(&'b Builder, &[Float<'b>]) -> (f32, Vec<Term<'b>>);
+type Sum<'a> = dyn for<'b> Fn(&'b Builder, &[Float<'b>]) -> (f32, Vec<Term<'b>>) + 'a;
 
 /// A constant and terms whose sum is a function on the unit cell, from parameters.
 pub(crate) struct Terms<'a> {
     /// Names the terms.
     pub(crate) key: String,
     /// The constant and the terms.
-    pub(crate) of: &'a Sum,
+    pub(crate) of: &'a Sum<'a>,
 }
 
 impl Cell for Terms<'_> {
