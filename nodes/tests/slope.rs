@@ -182,6 +182,28 @@ fn warps_and_patterns_keep_their_slopes() {
     held("wave", &wave, 0.25, [0.01, 0.01, 0.03]);
 }
 
+/// A distance has a gradient of length 1, and the difference of two that of two unit vectors less each
+/// other: of wide footprints the slopes are those, whatever the noise varies by. Under narrower ones its
+/// kinks are smoothed, and less is said than there is.
+#[test]
+fn wide_footprints_remove_the_slopes_of_distances() {
+    for (output, jitter) in [("F1", 1.0), ("F2", 0.5), ("F2-F1", 1.0), ("F2-F1", 0.75)] {
+        let inputs = json!({ "frequency": 4, "output": output, "jitter": jitter });
+        let graph = Graph::of_height(&json!({ "height":
+            { "type": "worleynoise2d", "inputs": inputs } }));
+        for ratio in [1.0, 8.0] {
+            let size = Size {
+                minor: 0.5,
+                ratio,
+                finest: 0.25,
+            };
+            let found = compared(&graph, Method::Local, &size);
+            println!("{output} {jitter} {ratio}:1  {:+.3}", found.bias);
+            assert!(found.bias.abs() <= 0.05, "{output}: {}", found.bias);
+        }
+    }
+}
+
 /// What the components of a normal share of the slopes that a footprint removed, their product has: of
 /// normals by slopes of a standard deviation of 1.6, E[n_x²] is 0.357.
 #[test]

@@ -43,7 +43,8 @@ pub(crate) fn filtered<'b>(
 ) -> Vec<Signal<'b>> {
     let mode = lower.mode();
     let spread = Spread::of(position);
-    lower.source_footprint(spread.eigenvalues[0].sqrt());
+    let size = spread.eigenvalues[0].sqrt();
+    lower.source_detail(size, worley.wavenumber());
     if !lower.image().0.is_identity() {
         return lines::filtered(lower, position, &spread, worley);
     }

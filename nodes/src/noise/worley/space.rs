@@ -112,7 +112,7 @@ pub(crate) fn filtered<'b>(
     // covariance is the square of a round footprint of the same size.
     let trace = b.sum(position.iter().map(Signal::variance));
     let size = (trace * 0.5).sqrt();
-    lower.source_footprint(size);
+    lower.source_detail(size, worley.wavenumber());
     let at = |lower: &Lower<'_, 'b>, [p, q]: [f32; 2]| {
         let moved: Vec<Float<'b>> = (position.iter().zip(&fractions))
             .map(|(axis, &fraction)| fraction + (axis.g[0] * p + axis.g[1] * q))
