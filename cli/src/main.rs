@@ -4,6 +4,7 @@
 //! goes into a [`report::Report`], which knows how it is shown; what stops it is a
 //! [`mistake::Mistake`].
 
+mod bake;
 mod check;
 mod compare;
 mod compile;
@@ -23,6 +24,7 @@ mod report;
 mod scene;
 mod schema;
 mod sources;
+mod strips;
 mod trade;
 mod value;
 

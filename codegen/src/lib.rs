@@ -18,5 +18,5 @@ pub mod wgsl;
 pub use lower::{
     Audit, AuditedBand, AuditedOutput, Bundle, Ensemble, Image, Lower, Method, NodeDef, NodeRule,
     Options, Over, ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Slopes, SumOfSteps,
-    Upstream, Widened, audit, compile, jumps, pairs,
+    Upstream, Widened, audit, compile, compile_audited, jumps, pairs,
 };

@@ -1,15 +1,12 @@
-//! Targets: validation of emitted WGSL and its translation, both by naga, and the manifest.
+//! Targets: validation of emitted WGSL and its translation, both by naga.
 //!
-//! All but the manifest needs the feature `targets`: naga is much to build for a host that takes the
-//! WGSL as it is.
+//! It needs the feature `targets`: naga is much to build for a host that takes the WGSL as it is.
 
-mod manifest;
 #[cfg(feature = "targets")]
 mod translate;
 #[cfg(feature = "targets")]
 mod validate;
 
-pub use manifest::{Manifest, ManifestOutput, ManifestParameter, ManifestTable, Range};
 #[cfg(feature = "targets")]
 pub use translate::{Target, TranslateError, Translated, translate};
 #[cfg(feature = "targets")]

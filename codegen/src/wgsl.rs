@@ -241,6 +241,10 @@ pub struct Shader {
     pub entry_point: Option<EntryPoint>,
     /// Every binding, in order.
     pub bindings: Vec<Binding>,
+    /// The struct of parameters.
+    pub parameters_struct: String,
+    /// The struct of outputs.
+    pub outputs_struct: String,
     /// The members of the struct of parameters, in order.
     pub parameters: Vec<ParameterField>,
     /// The size of that struct in bytes, a multiple of 16; 0 without parameters.
@@ -412,6 +416,8 @@ fn emitted(program: &Program, options: &Options, is_shaded: bool) -> Shader {
         shading,
         entry_point,
         bindings,
+        parameters_struct: names.parameters,
+        outputs_struct: names.outputs,
         parameters: face.parameters,
         parameters_size: face.parameters_size,
         outputs: face.outputs,

@@ -107,8 +107,8 @@ pub fn translate(shader: &Shader, target: Target) -> Result<Translated, Translat
 impl Validated {
     /// Translates the shader that this is naga's form of; for several targets it is read once.
     /// Bindings keep their numbers: GLSL's `binding`, HLSL's registers (space 0), Metal's buffer
-    /// indices. Metal's compute shaders read the byte lengths of their arrays from buffer 8, or from
-    /// the one behind the last binding if that is higher, in the order of the bindings.
+    /// indices. Metal's shaders read the byte lengths of their arrays from buffer 8, or from the one
+    /// behind the last binding if that is higher, in the order in which the text declares them.
     ///
     /// # Errors
     /// If the target needs an entry point that the shader has not, or naga's back end rejects it.
