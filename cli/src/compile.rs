@@ -1,13 +1,15 @@
 //! `compile`: shaders and what a host needs to know of them.
 
+use crate::forms::{self, FormName, TablesName};
 use crate::load::{self, allows_sampling};
 use crate::mistake::Mistake;
 use crate::report::Report;
 use crate::sources::Sources;
 use crate::value;
 use clap::{Args, ValueEnum};
-use mipless::target::{Manifest, Target, TranslateError, validate};
-use mipless::wgsl::{self, Entry};
+use mipless::form::Form;
+use mipless::target::{Manifest, Range, Target, TranslateError};
+use mipless::wgsl::{self, Entry, TABLE_WIDTH, TableForm};
 use mipless::{Diagnostic, Method, Options, PixelFilter, Texture};
 use mipless_runtime::image_file::write_all;
 use mipless_runtime::lit;
@@ -28,9 +30,13 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
 
-    /// The shading languages
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "wgsl")]
+    /// The shading languages [default: wgsl, or none beside forms]
+    #[arg(long, value_enum, value_delimiter = ',')]
     target: Vec<TargetName>,
+
+    /// Files for hosts: the function, and what calls it there
+    #[arg(long, value_enum, value_delimiter = ',')]
+    form: Vec<FormName>,
 
     /// auto, point, naive, ensemble, local, quad, split:4|7|16 or supersample:N
     #[arg(long, default_value = "auto")]
@@ -48,6 +54,11 @@ pub(crate) struct Arguments {
     /// The number of the first binding; tables are three behind it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=HIGHEST_BINDING))]
     binding: u32,
+
+    /// Where tables are read from: a buffer, a texture of one f32 a texel, or such a texture as the function's
+    /// first argument; hosts without buffers have a texture anyway
+    #[arg(long, value_enum, default_value = "storage")]
+    tables: TablesName,
 
     /// Declare no `Footprint` and `Position`, so that several textures stand in one module (WGSL only)
     #[arg(long)]
@@ -72,6 +83,7 @@ enum TargetName {
     Wgsl,
     Spirv,
     Glsl,
+    GlslEs,
     Hlsl,
     Msl,
 }
@@ -82,6 +94,7 @@ impl From<TargetName> for Target {
             TargetName::Wgsl => Self::Wgsl,
             TargetName::Spirv => Self::Spirv,
             TargetName::Glsl => Self::Glsl,
+            TargetName::GlslEs => Self::GlslEs,
             TargetName::Hlsl => Self::Hlsl,
             TargetName::Msl => Self::Msl,
         }
@@ -118,6 +131,7 @@ const LONGEST_STEM: usize = 200;
 struct Job<'a> {
     arguments: &'a Arguments,
     targets: Vec<Target>,
+    forms: Vec<Form>,
     entry: Entry,
     /// The graphs and what they name, which no output may replace.
     read: RefCell<Sources>,
@@ -128,6 +142,12 @@ impl<'a> Job<'a> {
         let mut targets: Vec<Target> = arguments.target.iter().map(|&name| name.into()).collect();
         targets.sort();
         targets.dedup();
+        let mut forms: Vec<Form> = arguments.form.iter().map(|&name| name.into()).collect();
+        forms.sort();
+        forms.dedup();
+        if targets.is_empty() && forms.is_empty() {
+            targets.push(Target::Wgsl);
+        }
         let needs = targets.iter().find(|target| target.needs_entry());
         let entry = match (arguments.entry, needs) {
             (Some(EntryName::None), Some(&target)) => {
@@ -140,6 +160,10 @@ impl<'a> Job<'a> {
             (Some(EntryName::Compute), _) => Entry::Compute,
             (Some(EntryName::None) | None, None) => Entry::None,
         };
+        if entry == Entry::Compute && targets.contains(&Target::GlslEs) {
+            let lacks = TranslateError::Lacks(Target::GlslEs, "compute shaders");
+            return Err(Mistake::usage("no-compute", lacks).help("choose `--entry fragment`"));
+        }
         if arguments.shared_footprint
             && let Some(target) = targets.iter().find(|target| **target != Target::Wgsl)
         {
@@ -158,6 +182,7 @@ impl<'a> Job<'a> {
         Ok(Self {
             arguments,
             targets,
+            forms,
             entry,
             read: RefCell::new(read),
         })
@@ -188,12 +213,14 @@ impl<'a> Job<'a> {
             ..Options::default()
         };
         let program = texture.compile(&options);
-        let emission = wgsl::Options {
+        let asked = wgsl::Options {
             entry: self.entry,
             group: self.arguments.group,
             binding: self.arguments.binding,
             shared_footprint: self.arguments.shared_footprint,
+            tables: self.arguments.tables.into(),
         };
+        let emission = forms::emission(&self.targets, &self.forms, asked);
         let emit = if self.arguments.shade {
             wgsl::emit_shaded
         } else {
@@ -216,28 +243,31 @@ impl<'a> Job<'a> {
                 .help("this is a bug of the compiler; please report it with the graph");
             Mistake::graph(path, vec![diagnostic])
         };
-        let validated = if emission.shared_footprint {
-            validate(&format!("{}{}", *wgsl::DECLARATIONS, shader.source))
-        } else {
-            validate(&shader.source)
-        };
-        let validated = validated.map_err(|error| invalid(error.into()))?;
-        for &target in &self.targets {
-            let bytes = validated.translate(&shader, target).map_err(invalid)?;
-            let stage = shader.entry_point.as_ref().map(|entry| entry.stage);
-            file(target.name(), target.extension(stage), bytes);
-        }
-        if let Some(tables) = &shader.tables {
-            let bytes = tables.data().iter().flat_map(|x| x.to_le_bytes()).collect();
-            file("tables", "tables.bin", bytes);
-        }
-        let manifest = Manifest::new(&shader, |name| {
+        let range = |name: &str| -> Range {
             let parameter = texture.parameters().iter().find(|p| p.name == name);
             parameter.map_or((None, None), |p| (p.min, p.max))
-        });
+        };
+        let wanted = (&self.targets[..], &self.forms[..]);
+        let emit = |options: &wgsl::Options| emit(&program, options);
+        let written = forms::files(wanted, emit, (&shader, emission), name, range);
+        for (key, extension, bytes) in written.map_err(invalid)? {
+            file(&key, extension, bytes);
+        }
+        let manifest = Manifest::new(&shader, range);
         let mut manifest = serde_json::from_str(&manifest.to_json()).unwrap_or(Value::Null);
         manifest["method"] = method.to_string().into();
         manifest["pixel_filter"] = value::pixel_filter_name(*pixel_filter).into();
+        if let Some(tables) = &shader.tables
+            && listed.contains_key("tables")
+        {
+            let is_buffer = emission.tables == TableForm::Storage && self.forms.is_empty();
+            if !is_buffer || self.targets.contains(&Target::GlslEs) {
+                let texture = serde_json::json!({
+                    "width": TABLE_WIDTH, "height": tables.rows(), "format": "r32float",
+                });
+                manifest["tables_texture"] = texture;
+            }
+        }
         if !shader.shading.is_empty() {
             manifest["shading"] = shader.shading.clone().into();
         }

@@ -10,6 +10,7 @@ mod compile;
 mod completions;
 mod export;
 mod foreign;
+mod forms;
 mod import;
 mod importing;
 mod load;
