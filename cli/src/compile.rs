@@ -6,6 +6,7 @@ mod output;
 mod watch;
 
 use crate::bake;
+use crate::forms::{FormName, TablesName};
 use crate::mistake::Mistake;
 use crate::progress;
 use crate::report::Report;
@@ -32,9 +33,13 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
 
-    /// The shading languages
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "wgsl")]
+    /// The shading languages [default: wgsl, or none beside forms]
+    #[arg(long, value_enum, value_delimiter = ',')]
     target: Vec<TargetName>,
+
+    /// Files for hosts: the function, and what calls it there
+    #[arg(long, value_enum, value_delimiter = ',')]
+    form: Vec<FormName>,
 
     /// auto, point, naive, ensemble, local, quad, split:4|7|16 or supersample:N
     #[arg(long, default_value = "auto")]
@@ -52,6 +57,11 @@ pub(crate) struct Arguments {
     /// The number of the first binding; tables are three behind it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=HIGHEST_BINDING))]
     binding: u32,
+
+    /// Where tables are read from: a buffer, a texture of one f32 a texel, or such a texture as the function's
+    /// first argument; hosts without buffers have a texture anyway
+    #[arg(long, value_enum, default_value = "storage")]
+    tables: TablesName,
 
     /// Declare no `Footprint` and `Position`, so that several textures stand in one module (WGSL only)
     #[arg(long)]
@@ -91,6 +101,7 @@ enum TargetName {
     Wgsl,
     Spirv,
     Glsl,
+    GlslEs,
     Hlsl,
     Msl,
 }
@@ -101,6 +112,7 @@ impl From<TargetName> for Target {
             TargetName::Wgsl => Self::Wgsl,
             TargetName::Spirv => Self::Spirv,
             TargetName::Glsl => Self::Glsl,
+            TargetName::GlslEs => Self::GlslEs,
             TargetName::Hlsl => Self::Hlsl,
             TargetName::Msl => Self::Msl,
         }

@@ -11,6 +11,7 @@ mod compile;
 mod completions;
 mod export;
 mod foreign;
+mod forms;
 mod import;
 mod importing;
 mod load;

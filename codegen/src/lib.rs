@@ -8,6 +8,8 @@
 
 pub mod cpu;
 pub mod float;
+#[cfg(feature = "targets")]
+pub mod form;
 pub mod ir;
 mod lower;
 pub mod moments;

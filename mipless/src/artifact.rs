@@ -2,9 +2,10 @@
 
 mod named;
 
-use crate::manifest::{Manifest, ManifestSource, bytes_of, sha256};
-use crate::target::{Target, TranslateError, validate};
-use crate::wgsl::{self, DECLARATIONS};
+use crate::form::Form;
+use crate::manifest::{Manifest, ManifestSource, ManifestTexture, sha256};
+use crate::target::{Target, TranslateError, Validated, validate};
+use crate::wgsl::{self, DECLARATIONS, Shader, TABLE_WIDTH, TableForm};
 use crate::{Options, Texture};
 
 /// The most letters of a file's name that come from the graph's, which are ASCII: folders take names
@@ -20,6 +21,8 @@ pub struct Recipe {
     pub emission: wgsl::Options,
     /// The targets.
     pub targets: Vec<Target>,
+    /// The files for hosts.
+    pub forms: Vec<Form>,
     /// Whether the functions that light a material stand beside its own: [`wgsl::emit_shaded`].
     pub is_shaded: bool,
     /// Where the graph came from, for the manifest.
@@ -56,26 +59,36 @@ impl Artifact {
     /// the compiler.
     pub fn new(texture: &Texture, recipe: &Recipe) -> Result<Self, TranslateError> {
         let (program, audit) = texture.compile_audited(&recipe.options);
-        let emit = if recipe.is_shaded {
-            wgsl::emit_shaded
-        } else {
-            wgsl::emit
+        let emit = |options: &wgsl::Options| match recipe.is_shaded {
+            true => wgsl::emit_shaded(&program, options),
+            false => wgsl::emit(&program, options),
         };
-        let shader = emit(&program, &recipe.emission);
-        let validated = if recipe.emission.shared_footprint {
-            validate(&format!("{}{}", *DECLARATIONS, shader.source))?
-        } else {
-            validate(&shader.source)?
-        };
+        // Most want what the first wants: a text is read once.
+        let first = first_emission(recipe);
+        let mut last = Text::new(first, emit(&first))?;
+        let shader = last.shader.clone();
         let mut manifest = Manifest::new(texture, &shader, &recipe.options, audit.as_ref());
         manifest.source.clone_from(&recipe.source);
         let stem = stem_of(&shader.function).to_owned();
+        let mut is_texture = false;
+        let mut at = |options: wgsl::Options, last: &mut Text| {
+            is_texture |= options.tables != TableForm::Storage;
+            if last.options != options {
+                *last = Text::new(options, emit(&options))?;
+            }
+            Ok::<_, TranslateError>(())
+        };
         let mut files = Vec::new();
         for &target in &recipe.targets {
-            let bytes = validated.translate(&shader, target)?;
+            let tables = target.tables(first.tables);
+            at(wgsl::Options { tables, ..first }, &mut last)?;
+            let Text {
+                shader, validated, ..
+            } = &last;
+            let bytes = validated.translate(shader, target)?;
             let stage = shader.entry_point.as_ref().map(|entry| entry.stage);
             let name = format!("{stem}.{}", target.extension(stage));
-            let mut described = named::described(target, &shader, &validated, &bytes);
+            let mut described = named::described(target, shader, validated, &bytes);
             described.file.clone_from(&name);
             described.sha256 = sha256(&bytes);
             described.key = target_key(&recipe.emission);
@@ -86,11 +99,46 @@ impl Artifact {
                 bytes,
             });
         }
+        let range = |name: &str| {
+            let parameter = texture.parameters().iter().find(|p| p.name == name);
+            parameter.map_or((None, None), |p| (p.min, p.max))
+        };
+        for &form in &recipe.forms {
+            at(form.emission(first), &mut last)?;
+            let written = form.files(&last.validated, &last.shader, &stem, range)?;
+            let several = written.len() > 1;
+            for file in written {
+                let key = match several {
+                    true => format!("{} {}", form.name(), file.extension),
+                    false => form.name().to_owned(),
+                };
+                files.push(ArtifactFile {
+                    key,
+                    name: format!("{stem}.{}", file.extension),
+                    bytes: file.text.into_bytes(),
+                });
+            }
+        }
         if let Some(tables) = &shader.tables {
+            let numbers = if is_texture {
+                manifest.tables_texture = Some(ManifestTexture {
+                    width: TABLE_WIDTH,
+                    height: tables.rows(),
+                    format: "r32float",
+                });
+                tables.texels()
+            } else {
+                tables.data()
+            };
+            let bytes: Vec<u8> = numbers.into_iter().flat_map(f32::to_le_bytes).collect();
+            if let Some(data) = &mut manifest.tables_data {
+                data.length = (bytes.len() / 4) as u32;
+                data.sha256 = sha256(&bytes);
+            }
             files.push(ArtifactFile {
                 key: "tables".to_owned(),
                 name: format!("{stem}.tables.bin"),
-                bytes: bytes_of(tables),
+                bytes,
             });
         }
         let named = files
@@ -104,9 +152,56 @@ impl Artifact {
         })
     }
 
+    /// Adds a file that another room makes.
+    pub fn push(&mut self, key: &str, extension: &str, bytes: Vec<u8>) {
+        let name = format!("{}.{extension}", self.stem);
+        self.manifest.files.insert(key.to_owned(), name.clone());
+        self.files.push(ArtifactFile {
+            key: key.to_owned(),
+            name,
+            bytes,
+        });
+    }
+
     /// The name of the manifest's file.
     pub fn manifest_name(&self) -> String {
         format!("{}.json", self.stem)
+    }
+}
+
+/// A text that is read and validated.
+struct Text {
+    options: wgsl::Options,
+    shader: Shader,
+    validated: Validated,
+}
+
+impl Text {
+    /// One that declares no `Footprint` is read behind its declaration.
+    fn new(options: wgsl::Options, shader: Shader) -> Result<Self, TranslateError> {
+        let validated = if options.shared_footprint {
+            validate(&format!("{}{}", *DECLARATIONS, shader.source))?
+        } else {
+            validate(&shader.source)?
+        };
+        Ok(Self {
+            options,
+            shader,
+            validated,
+        })
+    }
+}
+
+/// How a graph is emitted where nothing is special: as its first target or form wants it.
+fn first_emission(recipe: &Recipe) -> wgsl::Options {
+    let asked = recipe.emission;
+    match (recipe.targets.first(), recipe.forms.first()) {
+        (Some(target), _) => wgsl::Options {
+            tables: target.tables(asked.tables),
+            ..asked
+        },
+        (None, Some(form)) => form.emission(asked),
+        (None, None) => asked,
     }
 }
 

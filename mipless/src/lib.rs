@@ -137,6 +137,8 @@ pub use files::{
     Files, Folder, LARGEST_FILE, LARGEST_PICTURE, LARGEST_SIDE, NoFiles, Within, name_of_file,
 };
 pub use mipless_codegen::cpu::Footprint;
+#[cfg(feature = "targets")]
+pub use mipless_codegen::form;
 pub use mipless_codegen::ir::{Interface, Program};
 pub use mipless_codegen::{
     Audit, AuditedBand, AuditedOutput, Method, NodeDef, Options, PixelFilter, Remedy, Replaced,

@@ -2,7 +2,9 @@
 
 mod schema;
 
-use crate::wgsl::{BindingKind, EntryPoint, PIXELS_PER_ROW, Shader, Stage, Tables, WORKGROUP_SIZE};
+use crate::wgsl::{
+    BindingKind, EntryPoint, PIXELS_PER_ROW, Shader, Stage, TableForm, Tables, WORKGROUP_SIZE,
+};
 use crate::{Audit, Options, Texture};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -53,6 +55,9 @@ pub struct Manifest {
     /// The contents of the buffer of tables.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tables_data: Option<ManifestData>,
+    /// The same as a texture, where a text reads them from one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tables_texture: Option<ManifestTexture>,
     /// The tables in that buffer, in order.
     pub tables: Vec<ManifestTable>,
     /// What is written for each target, and what it calls what a host binds.
@@ -232,6 +237,17 @@ pub struct ManifestData {
     pub sha256: String,
 }
 
+/// A texture that holds the tables row by row, one number a texel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ManifestTexture {
+    /// Its columns.
+    pub width: u32,
+    /// Its rows.
+    pub height: u32,
+    /// The format of a texel.
+    pub format: &'static str,
+}
+
 /// A table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ManifestTable {
@@ -362,6 +378,7 @@ impl Manifest {
             outputs: outputs(texture, shader, audit),
             bindings: bindings(shader, footprint_bytes),
             tables_data: data,
+            tables_texture: None,
             tables: tables(shader),
             targets: BTreeMap::new(),
             files: BTreeMap::new(),
@@ -522,6 +539,7 @@ fn bindings(shader: &Shader, footprint_bytes: u32) -> Vec<ManifestBinding> {
                 shader.parameters_size,
             ),
             BindingKind::Outputs => ("storage-read-write", "f32", 4),
+            BindingKind::Tables if shader.table_form != TableForm::Storage => ("texture", "f32", 4),
             BindingKind::Tables => ("storage-read", "f32", 4),
         };
         ManifestBinding {

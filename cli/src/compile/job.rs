@@ -2,10 +2,12 @@
 
 use super::output::Folder;
 use super::{Arguments, EntryName};
+use crate::forms;
 use crate::load::{self, allows_sampling};
 use crate::mistake::Mistake;
 use crate::report::Report;
 use mipless::artifact::{Artifact, Recipe, target_key};
+use mipless::form::Form;
 use mipless::manifest::{COMPILER, ManifestSource, sha256};
 use mipless::target::{Target, TranslateError};
 use mipless::wgsl::{self, Entry};
@@ -19,6 +21,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct Job<'a> {
     arguments: &'a Arguments,
     targets: Vec<Target>,
+    forms: Vec<Form>,
     emission: wgsl::Options,
 }
 
@@ -43,6 +46,12 @@ impl<'a> Job<'a> {
         let mut targets: Vec<Target> = arguments.target.iter().map(|&name| name.into()).collect();
         targets.sort();
         targets.dedup();
+        let mut forms: Vec<Form> = arguments.form.iter().map(|&name| name.into()).collect();
+        forms.sort();
+        forms.dedup();
+        if targets.is_empty() && forms.is_empty() {
+            targets.push(Target::Wgsl);
+        }
         let needs = targets.iter().find(|target| target.needs_entry());
         let entry = match (arguments.entry, needs) {
             (Some(EntryName::None), Some(&target)) => {
@@ -55,6 +64,10 @@ impl<'a> Job<'a> {
             (Some(EntryName::Compute), _) => Entry::Compute,
             (Some(EntryName::None) | None, None) => Entry::None,
         };
+        if entry == Entry::Compute && targets.contains(&Target::GlslEs) {
+            let lacks = TranslateError::Lacks(Target::GlslEs, "compute shaders");
+            return Err(Mistake::usage("no-compute", lacks).help("choose `--entry fragment`"));
+        }
         if arguments.shared_footprint
             && let Some(target) = targets.iter().find(|target| **target != Target::Wgsl)
         {
@@ -71,11 +84,13 @@ impl<'a> Job<'a> {
         Ok(Self {
             arguments,
             targets,
+            forms,
             emission: wgsl::Options {
                 entry,
                 group: arguments.group,
                 binding: arguments.binding,
                 shared_footprint: arguments.shared_footprint,
+                tables: arguments.tables.into(),
             },
         })
     }
@@ -93,7 +108,9 @@ impl<'a> Job<'a> {
             && !self.arguments.force
         {
             let files = load::files(path, report)?;
-            let targets: Vec<&str> = self.targets.iter().map(|target| target.name()).collect();
+            let targets = self.targets.iter().map(|target| target.name());
+            let forms = self.forms.iter().map(|form| form.name());
+            let targets: Vec<&str> = targets.chain(forms).collect();
             let known = folder.unchanged(key, &targets, &target_key(&self.emission), &*files);
             if let Some(manifest) = known {
                 let read = manifest["source"]["files"].as_array().into_iter().flatten();
@@ -135,15 +152,17 @@ impl<'a> Job<'a> {
             },
             emission: self.emission,
             targets: self.targets.clone(),
+            forms: self.forms.clone(),
             is_shaded: self.arguments.shade,
             source,
         };
-        let artifact = Artifact::new(&texture, &recipe).map_err(|error| {
+        let mut artifact = Artifact::new(&texture, &recipe).map_err(|error| {
             let message = format!("the shader is not valid: {error}");
             let diagnostic = Diagnostic::error("invalid-shader", message)
                 .help("this is a bug of the compiler; please report it with the graph");
             Mistake::graph(path, vec![diagnostic])
         })?;
+        forms::push_picture(&mut artifact, &self.forms);
         Ok(Done {
             reads,
             made: Made::Files(Box::new(artifact)),

@@ -42,7 +42,7 @@ pub(super) fn described(
         function: (target != Target::Spirv).then(|| shader.function.clone()),
         entry_point: shader.entry_point.as_ref().map(|entry| EntryPoint {
             name: match target {
-                Target::Glsl => "main".to_owned(),
+                Target::Glsl | Target::GlslEs => "main".to_owned(),
                 _ => entry.name.clone(),
             },
             stage: entry.stage,
@@ -62,6 +62,7 @@ fn language(target: Target) -> &'static str {
         Target::Wgsl => "WGSL",
         Target::Spirv => "SPIR-V 1.3",
         Target::Glsl => "GLSL 4.50",
+        Target::GlslEs => "GLSL ES 3.00",
         Target::Hlsl => "HLSL, shader model 5.1",
         Target::Msl => "Metal Shading Language 2.0",
     }
@@ -71,7 +72,7 @@ fn varying(target: Target, location: u32) -> String {
     match target {
         Target::Wgsl => format!("@location({location})"),
         Target::Spirv => format!("Location {location}"),
-        Target::Glsl => format!("_vs2fs_location{location}"),
+        Target::Glsl | Target::GlslEs => format!("_vs2fs_location{location}"),
         Target::Hlsl => format!("LOC{location}"),
         Target::Msl => format!("user(loc{location})"),
     }
@@ -81,7 +82,7 @@ fn color(target: Target, location: u32) -> String {
     match target {
         Target::Wgsl => format!("@location({location})"),
         Target::Spirv => format!("Location {location}"),
-        Target::Glsl => format!("_fs2p_location{location}"),
+        Target::Glsl | Target::GlslEs => format!("_fs2p_location{location}"),
         Target::Hlsl => format!("SV_Target{location}"),
         Target::Msl => format!("color({location})"),
     }
@@ -108,14 +109,18 @@ fn bound(target: Target, shader: &Shader, binding: &Binding, text: &str) -> Targ
             found.name = None;
             found.place = format!("set = {group}, binding = {number}");
         }
-        Target::Glsl => {
+        Target::Glsl | Target::GlslEs => {
             let stage = match shader.entry_point.as_ref().map(|entry| entry.stage) {
                 Some(Stage::Compute) => "cs",
                 Some(Stage::Fragment) | None => "fs",
             };
             let variable = format!("_group_{group}_binding_{number}_{stage}");
             found.block = block(text, &variable);
-            found.place = format!("binding = {number}");
+            found.place = match target {
+                // It has no numbers of bindings.
+                Target::GlslEs => "by name".to_owned(),
+                _ => format!("binding = {number}"),
+            };
             found.name = Some(variable);
         }
         Target::Hlsl => {
@@ -126,6 +131,10 @@ fn bound(target: Target, shader: &Shader, binding: &Binding, text: &str) -> Targ
         Target::Msl => {
             if let Some(index) = between(text, &format!("& {name} [[buffer("), ")") {
                 found.place = format!("[[buffer({index})]]");
+                found.index = index.parse().unwrap_or(*number);
+            }
+            if let Some(index) = between(text, &format!(" {name} [[texture("), ")") {
+                found.place = format!("[[texture({index})]]");
                 found.index = index.parse().unwrap_or(*number);
             }
         }

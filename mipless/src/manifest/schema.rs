@@ -200,7 +200,7 @@ pub fn manifest_schema() -> Value {
                 ("kind", kind(), "What it holds."),
                 (
                     "access",
-                    json!({ "enum": ["uniform", "storage-read", "storage-read-write"] }),
+                    json!({ "enum": ["uniform", "storage-read", "storage-read-write", "texture"] }),
                     "How it is read.",
                 ),
                 ("element", text(), "What it holds one of, or an array of."),
@@ -220,6 +220,20 @@ pub fn manifest_schema() -> Value {
                 ),
                 ("length", count(), "How many numbers there are."),
                 ("sha256", digest(), "The SHA-256 of its bytes."),
+            ],
+            vec![],
+        ),
+        (
+            "texture",
+            "A texture that holds the tables row by row, one number a texel.",
+            vec![
+                ("width", count(), "Its columns."),
+                ("height", count(), "Its rows."),
+                (
+                    "format",
+                    json!({ "const": "r32float" }),
+                    "The format of a texel.",
+                ),
             ],
             vec![],
         ),
@@ -380,6 +394,11 @@ pub fn manifest_schema() -> Value {
                 "tables_data",
                 json!({ "$ref": "#/$defs/data" }),
                 "The buffer of tables.",
+            ),
+            (
+                "tables_texture",
+                json!({ "$ref": "#/$defs/texture" }),
+                "The same as a texture.",
             ),
             ("targets", targets, "The texts, by the names of targets."),
         ],
