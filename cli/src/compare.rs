@@ -11,7 +11,7 @@ use mipless::Method;
 use mipless_graph::CheckOptions;
 use mipless_runtime::compare::{Panel, compose};
 use mipless_runtime::image::Image;
-use mipless_runtime::image_file::{Bits, Format, encode, write_all};
+use mipless_runtime::image_file::{Bits, Format, Space, encode, write_all};
 use mipless_runtime::lit::{Halves, Hiding, Lit};
 use mipless_runtime::metrics::display_difference;
 use mipless_runtime::plan::TRUTH;
@@ -22,6 +22,10 @@ use std::path::PathBuf;
 /// The arguments of `compare`.
 #[derive(Args, Debug)]
 pub(crate) struct Arguments {
+    /// The graph, a JSON file; `-` is standard input
+    #[arg(value_name = "GRAPH")]
+    graph: PathBuf,
+
     #[command(flatten)]
     scene: scene::Arguments,
 
@@ -44,14 +48,15 @@ type Column = (Image, String, f64);
 /// Evaluates, measures and writes.
 pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mistake> {
     let refused = |error| Mistake::usage("usage", error);
-    let format = Format::of(&arguments.out, Bits::Eight).map_err(refused)?;
+    let format = Format::of(&arguments.out, Bits::Eight, Space::Srgb).map_err(refused)?;
     writable(&arguments.out)?;
     let default = Size::new(480, 270);
-    let mut scene = arguments
-        .scene
-        .open(&CheckOptions::default(), default, report)?;
+    let mut scene =
+        arguments
+            .scene
+            .open(&arguments.graph, &CheckOptions::default(), default, report)?;
     let mut read = Sources::default();
-    read.add_graph(&arguments.scene.graph, &scene.texture);
+    read.add_graph(&arguments.graph, &scene.texture);
     read.guard(&arguments.out)?;
 
     let (panels, results) = match scene.lit(Hiding::Nothing) {
@@ -94,13 +99,13 @@ fn columns(
     report: &mut Report,
 ) -> Result<(Vec<Column>, Vec<serde_json::Value>), Mistake> {
     // The other methods do not sample, so that they share no points with the truth.
-    let truth = scene.evaluate(&scene.options(TRUTH), report)?.mean;
+    let truth = scene.evaluate(&scene.options(TRUTH), report)?;
     let noise_floor = plan::measured(scene, &[], PIXELS, report)?.noise_floor;
     // The measured truth has twice as many points.
     let noise_floor = noise_floor * std::f64::consts::SQRT_2;
     let mut images = Vec::new();
     for method in [Method::Point, Method::Auto] {
-        let image = scene.evaluate(&scene.options(method), report)?.mean;
+        let image = scene.evaluate(&scene.options(method), report)?;
         images.push((image, method.to_string()));
     }
     let name = format!("truth ({TRUTH})");

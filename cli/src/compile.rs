@@ -1,21 +1,25 @@
 //! `compile`: shaders and what a host needs to know of them.
 
-use crate::load::{self, allows_sampling};
+mod depfile;
+mod job;
+mod output;
+mod watch;
+
+use crate::bake;
+use crate::forms::{FormName, TablesName};
 use crate::mistake::Mistake;
+use crate::progress;
 use crate::report::Report;
 use crate::sources::Sources;
 use crate::value;
 use clap::{Args, ValueEnum};
-use mipless::target::{Manifest, Target, TranslateError, validate};
-use mipless::wgsl::{self, Entry};
-use mipless::{Diagnostic, Method, Options, PixelFilter, Texture};
-use mipless_runtime::image_file::write_all;
-use mipless_runtime::lit;
-use serde_json::{Map, Value};
-use std::cell::RefCell;
-use std::collections::BTreeMap;
-use std::fs;
+use job::{Done, Job};
+use mipless::target::Target;
+use mipless::{Method, PixelFilter};
+use output::Written;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The arguments of `compile`.
 #[derive(Args, Debug)]
@@ -24,13 +28,18 @@ pub(crate) struct Arguments {
     #[arg(value_name = "GRAPH", required = true)]
     graphs: Vec<PathBuf>,
 
-    /// The folder for the shaders, tables and manifests; it is made if it does not exist
+    /// The folder for the shaders, tables and manifests; it is made if it does not exist. What is in it
+    /// and would not change is not touched
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
 
-    /// The shading languages
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "wgsl")]
+    /// The shading languages [default: wgsl, or none beside forms]
+    #[arg(long, value_enum, value_delimiter = ',')]
     target: Vec<TargetName>,
+
+    /// Files for hosts: the function, and what calls it there
+    #[arg(long, value_enum, value_delimiter = ',')]
+    form: Vec<FormName>,
 
     /// auto, point, naive, ensemble, local, quad, split:4|7|16 or supersample:N
     #[arg(long, default_value = "auto")]
@@ -49,6 +58,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=HIGHEST_BINDING))]
     binding: u32,
 
+    /// Where tables are read from: a buffer, a texture of one f32 a texel, or such a texture as the function's
+    /// first argument; hosts without buffers have a texture anyway
+    #[arg(long, value_enum, default_value = "storage")]
+    tables: TablesName,
+
     /// Declare no `Footprint` and `Position`, so that several textures stand in one module (WGSL only)
     #[arg(long)]
     shared_footprint: bool,
@@ -62,6 +76,21 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "gaussian:SD|box", default_value = "gaussian:0.5",
         value_parser = value::pixel_filter)]
     pixel_filter: PixelFilter,
+
+    #[command(flatten)]
+    bake: bake::Arguments,
+
+    /// Also write a rule for make and ninja: which files each shader depends on
+    #[arg(long, value_name = "FILE")]
+    depfile: Option<PathBuf>,
+
+    /// Compile graphs too whose files are what the manifest says
+    #[arg(long)]
+    force: bool,
+
+    /// Go on: compile again whenever a graph, or a file that it reads, changes
+    #[arg(long)]
+    watch: bool,
 }
 
 /// Metal and GLSL number their buffers in a byte, of which lengths of arrays take one more.
@@ -72,6 +101,7 @@ enum TargetName {
     Wgsl,
     Spirv,
     Glsl,
+    GlslEs,
     Hlsl,
     Msl,
 }
@@ -82,6 +112,7 @@ impl From<TargetName> for Target {
             TargetName::Wgsl => Self::Wgsl,
             TargetName::Spirv => Self::Spirv,
             TargetName::Glsl => Self::Glsl,
+            TargetName::GlslEs => Self::GlslEs,
             TargetName::Hlsl => Self::Hlsl,
             TargetName::Msl => Self::Msl,
         }
@@ -95,215 +126,80 @@ enum EntryName {
     None,
 }
 
+/// Graphs that are compiled before the first of them is written: what they make is held in memory.
+const BATCH: usize = 64;
+
 /// Compiles every graph; the files of a graph are written together or not at all.
 pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mistake> {
-    let job = Job::new(arguments)?;
-    // Who writes what, so that two graphs of one name do not overwrite each other.
-    let mut owners = BTreeMap::new();
-    let mut compiled = Vec::new();
-    for path in &arguments.graphs {
-        match job.graph(path, &mut owners, report) {
-            Ok(result) => compiled.push(result),
-            Err(mistake) => report.mistake(&mistake),
-        }
+    let standard_input = arguments.graphs.iter().any(|path| path == Path::new("-"));
+    if arguments.watch && standard_input {
+        return Err(Mistake::usage(
+            "usage",
+            "`--watch` watches files, and `-` is standard input",
+        )
+        .help("name the file of the graph"));
     }
-    report.result("compiled", compiled);
+    let read = round(arguments, report)?;
+    if arguments.watch {
+        return watch::watch(arguments, read, report);
+    }
     Ok(())
 }
 
-/// The most letters of a file's name that come from the graph's, which are ASCII.
-const LONGEST_STEM: usize = 200;
-
-/// What is done to every graph.
-struct Job<'a> {
-    arguments: &'a Arguments,
-    targets: Vec<Target>,
-    entry: Entry,
-    /// The graphs and what they name, which no output may replace.
-    read: RefCell<Sources>,
-}
-
-impl<'a> Job<'a> {
-    fn new(arguments: &'a Arguments) -> Result<Self, Mistake> {
-        let mut targets: Vec<Target> = arguments.target.iter().map(|&name| name.into()).collect();
-        targets.sort();
-        targets.dedup();
-        let needs = targets.iter().find(|target| target.needs_entry());
-        let entry = match (arguments.entry, needs) {
-            (Some(EntryName::None), Some(&target)) => {
-                return Err(
-                    Mistake::usage("needs-entry", TranslateError::NeedsEntry(target))
-                        .help("choose `--entry fragment` or `--entry compute`"),
-                );
+/// Compiles all graphs once; returns what was read.
+fn round(arguments: &Arguments, report: &mut Report) -> Result<Vec<PathBuf>, Mistake> {
+    let job = Job::new(arguments)?;
+    let mut folder = output::Folder::open(&arguments.out);
+    let mut sources = Sources::default();
+    arguments.graphs.iter().for_each(|path| sources.add(path));
+    if let Some(depfile) = &arguments.depfile {
+        sources.guard(depfile)?;
+    }
+    let (mut compiled, mut rules) = (Vec::new(), Vec::new());
+    let mut read = arguments.graphs.clone();
+    let count = arguments.graphs.len() as u32;
+    let finished = AtomicU32::new(0);
+    for graphs in arguments.graphs.chunks(BATCH) {
+        // What each says is held until all are done, so that it comes in the order of the graphs.
+        let parts: Vec<Report> = graphs.iter().map(|_| report.part()).collect();
+        let results: Vec<(Result<Done, Mistake>, Report)> =
+            progress::watch(report, "compiling", |bar| {
+                let one = |(path, mut part): (&PathBuf, Report)| {
+                    let result = job.graph(path, &folder, &mut part);
+                    let finished = finished.fetch_add(1, Ordering::Relaxed) + 1;
+                    if let Some(progress) = bar.progress {
+                        progress(finished, count);
+                    }
+                    (result, part)
+                };
+                graphs.par_iter().zip(parts).map(one).collect()
+            });
+        for (path, (result, part)) in graphs.iter().zip(results) {
+            report.absorb(part);
+            if let Ok(done) = &result {
+                done.reads.iter().for_each(|file| sources.add(file));
             }
-            (Some(EntryName::Fragment), _) | (None, Some(_)) => Entry::Fragment,
-            (Some(EntryName::Compute), _) => Entry::Compute,
-            (Some(EntryName::None) | None, None) => Entry::None,
-        };
-        if arguments.shared_footprint
-            && let Some(target) = targets.iter().find(|target| **target != Target::Wgsl)
-        {
-            let message = format!(
-                "`--shared-footprint` leaves a struct undeclared, so that there is no {}",
-                target.name()
-            );
-            return Err(Mistake::usage("shared-footprint", message).help("choose `--target wgsl`"));
-        }
-        if arguments.out.exists() && !arguments.out.is_dir() {
-            let message = format!("{}: it is no folder", arguments.out.display());
-            return Err(Mistake::usage("unwritable-file", message));
-        }
-        let mut read = Sources::default();
-        arguments.graphs.iter().for_each(|path| read.add(path));
-        Ok(Self {
-            arguments,
-            targets,
-            entry,
-            read: RefCell::new(read),
-        })
-    }
-
-    fn graph(
-        &self,
-        path: &Path,
-        owners: &mut BTreeMap<PathBuf, PathBuf>,
-        report: &mut Report,
-    ) -> Result<Value, Mistake> {
-        let Arguments {
-            method,
-            pixel_filter,
-            out,
-            ..
-        } = self.arguments;
-        let texture = load::load(path, &allows_sampling(*method), report)?;
-        self.read.borrow_mut().add_graph(path, &texture);
-        let texture = if self.arguments.shade {
-            self.shaded(path, &texture)?
-        } else {
-            texture
-        };
-        let options = Options {
-            method: *method,
-            filter: *pixel_filter,
-            ..Options::default()
-        };
-        let program = texture.compile(&options);
-        let emission = wgsl::Options {
-            entry: self.entry,
-            group: self.arguments.group,
-            binding: self.arguments.binding,
-            shared_footprint: self.arguments.shared_footprint,
-        };
-        let emit = if self.arguments.shade {
-            wgsl::emit_shaded
-        } else {
-            wgsl::emit
-        };
-        let shader = emit(&program, &emission);
-        // Folders take names of 255 bytes.
-        let name = &shader.function[..shader.function.len().min(LONGEST_STEM)];
-
-        let mut files = Vec::new();
-        let mut listed = Map::new();
-        let mut file = |key: &str, extension: &str, bytes: Vec<u8>| {
-            let file = format!("{name}.{extension}");
-            listed.insert(key.to_owned(), file.clone().into());
-            files.push((out.join(file), bytes));
-        };
-        let invalid = |error: TranslateError| {
-            let message = format!("the shader is not valid: {error}");
-            let diagnostic = Diagnostic::error("invalid-shader", message)
-                .help("this is a bug of the compiler; please report it with the graph");
-            Mistake::graph(path, vec![diagnostic])
-        };
-        let validated = if emission.shared_footprint {
-            validate(&format!("{}{}", *wgsl::DECLARATIONS, shader.source))
-        } else {
-            validate(&shader.source)
-        };
-        let validated = validated.map_err(|error| invalid(error.into()))?;
-        for &target in &self.targets {
-            let bytes = validated.translate(&shader, target).map_err(invalid)?;
-            let stage = shader.entry_point.as_ref().map(|entry| entry.stage);
-            file(target.name(), target.extension(stage), bytes);
-        }
-        if let Some(tables) = &shader.tables {
-            let bytes = tables.data().iter().flat_map(|x| x.to_le_bytes()).collect();
-            file("tables", "tables.bin", bytes);
-        }
-        let manifest = Manifest::new(&shader, |name| {
-            let parameter = texture.parameters().iter().find(|p| p.name == name);
-            parameter.map_or((None, None), |p| (p.min, p.max))
-        });
-        let mut manifest = serde_json::from_str(&manifest.to_json()).unwrap_or(Value::Null);
-        manifest["method"] = method.to_string().into();
-        manifest["pixel_filter"] = value::pixel_filter_name(*pixel_filter).into();
-        if !shader.shading.is_empty() {
-            manifest["shading"] = shader.shading.clone().into();
-        }
-        manifest["files"] = listed.into();
-        files.push((
-            out.join(format!("{name}.json")),
-            format!("{manifest:#}\n").into_bytes(),
-        ));
-
-        self.claim(path, &files, owners)?;
-        let unwritable = |error: &dyn std::fmt::Display| {
-            Mistake::usage("unwritable-file", format!("{}: {error}", out.display()))
-        };
-        fs::create_dir_all(out).map_err(|error| unwritable(&error))?;
-        write_all(&files).map_err(|error| unwritable(&error))?;
-
-        let written: Vec<String> = files.iter().map(|(f, _)| f.display().to_string()).collect();
-        report.note(format_args!("{}: {}", path.display(), written.join(", ")));
-        Ok(serde_json::json!({
-            "graph": path.display().to_string(),
-            "files": written,
-            "manifest": manifest,
-        }))
-    }
-
-    /// What the functions that shade take of the graph's material.
-    fn shaded(&self, path: &Path, texture: &Texture) -> Result<Texture, Mistake> {
-        let parts = [&lit::parts()[..], &["mean_opacity", "displacement"]].concat();
-        let Some(material) = texture.material(&parts, &allows_sampling(self.arguments.method))
-        else {
-            let message = format!(
-                "{}: `--shade` shades a material, and the graph has none",
-                path.display()
-            );
-            return Err(Mistake::usage("no-surface", message).help("end the graph in a `surface`"));
-        };
-        material.map_err(|wrong| Mistake::graph(path, wrong))
-    }
-
-    /// Refuses to write over a graph, or over what another graph of this run has written.
-    fn claim(
-        &self,
-        path: &Path,
-        files: &[(PathBuf, Vec<u8>)],
-        owners: &mut BTreeMap<PathBuf, PathBuf>,
-    ) -> Result<(), Mistake> {
-        for (file, _) in files {
-            let read = self.read.borrow().guard(file);
-            read.map_err(|mistake| mistake.help("choose another folder with `--out`"))?;
-            if let Some(owner) = owners.get(file) {
-                let message = format!(
-                    "{} and {} would both write {}",
-                    owner.display(),
-                    path.display(),
-                    file.display()
-                );
-                return Err(
-                    Mistake::usage("same-name", message).help("give the graphs different names")
-                );
+            let written = result.and_then(|done| {
+                let written = folder.write(path, &done, &sources)?;
+                Ok((done, written))
+            });
+            match written {
+                Ok((done, written)) => {
+                    report.note(format_args!("{}: {written}", path.display()));
+                    let Written { files, .. } = &written;
+                    rules.push(depfile::rule(files, path, &done.reads));
+                    read.extend(done.reads);
+                    compiled.push(written.to_json(path));
+                }
+                Err(mistake) => report.mistake(&mistake),
             }
         }
-        owners.extend(
-            files
-                .iter()
-                .map(|(file, _)| (file.clone(), path.to_path_buf())),
-        );
-        Ok(())
     }
+    if let Some(path) = &arguments.depfile {
+        // By now what the graphs read is known too.
+        sources.guard(path)?;
+        depfile::write(path, &rules)?;
+    }
+    report.result("compiled", compiled);
+    Ok(read)
 }

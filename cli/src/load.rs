@@ -3,9 +3,12 @@
 use crate::importing;
 use crate::mistake::{Mistake, Status};
 use crate::report::Report;
+use mipless::manifest::{ManifestRead, sha256};
 use mipless::{Diagnostic, Files, Folder, Method, Texture, name_of_file};
 use mipless_graph::CheckOptions;
 use mipless_import::{Format, Imported};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -32,6 +35,48 @@ pub(crate) fn load(
     Ok(texture)
 }
 
+/// The same of a text that is read already, with the files beside the graph that were read for it, and what
+/// they hold.
+pub(crate) fn load_recorded(
+    path: &Path,
+    text: String,
+    options: &CheckOptions,
+    report: &mut Report,
+) -> Result<(Texture, Recorded), Mistake> {
+    let files = Recorded {
+        files: files(path, report)?,
+        read: RefCell::default(),
+    };
+    let graph = graph_with(path, text, &files, report)?;
+    let texture = parse_with(path, &graph, options, &files, report)?;
+    warn(path, &texture, report);
+    Ok((texture, files))
+}
+
+/// Files that remember which of them were read.
+pub(crate) struct Recorded {
+    files: Box<dyn Files>,
+    read: RefCell<BTreeMap<String, String>>,
+}
+
+impl Recorded {
+    /// The names, with the SHA-256 of what the files hold.
+    pub(crate) fn read(self) -> Vec<ManifestRead> {
+        let read = self.read.into_inner().into_iter();
+        read.map(|(name, sha256)| ManifestRead { name, sha256 })
+            .collect()
+    }
+}
+
+impl Files for Recorded {
+    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
+        let bytes = self.files.read(name)?;
+        let mut read = self.read.borrow_mut();
+        read.insert(name.to_owned(), sha256(&bytes));
+        Ok(bytes)
+    }
+}
+
 /// The text of a graph, and where it comes from if another tool wrote it.
 #[derive(Debug)]
 pub(crate) struct Written {
@@ -41,11 +86,19 @@ pub(crate) struct Written {
 
 /// Reads a file as the text of a graph; a document of another tool is converted on the way.
 pub(crate) fn graph(path: &Path, report: &mut Report) -> Result<Written, Mistake> {
-    let text = read(path)?;
+    let files = files(path, report)?;
+    graph_with(path, read(path)?, &*files, report)
+}
+
+fn graph_with(
+    path: &Path,
+    text: String,
+    files: &dyn Files,
+    report: &mut Report,
+) -> Result<Written, Mistake> {
     match Format::of(path) {
         Some(format) => {
-            let files = files(path, report)?;
-            let (text, imported) = importing::graph(format, path, &text, &*files, report)?;
+            let (text, imported) = importing::graph(format, path, &text, files, report)?;
             Ok(Written {
                 text,
                 imported: Some(imported),
@@ -81,12 +134,21 @@ pub(crate) fn parse(
     options: &CheckOptions,
     report: &Report,
 ) -> Result<Texture, Mistake> {
-    let files = files(path, report)?;
+    parse_with(path, graph, options, &*files(path, report)?, report)
+}
+
+fn parse_with(
+    path: &Path,
+    graph: &Written,
+    options: &CheckOptions,
+    files: &dyn Files,
+    report: &Report,
+) -> Result<Texture, Mistake> {
     let name = name_of_file(path);
-    let checked = Texture::with_name(&name, &graph.text, options, &*files);
+    let checked = Texture::with_name(&name, &graph.text, options, files);
     let fixed = graph.imported.as_ref().filter(|_| checked.is_err());
     if let Some(document) = fixed.and_then(Imported::without_inputs)
-        && let Ok(texture) = Texture::with_name(&name, &document.to_text(), options, &*files)
+        && let Ok(texture) = Texture::with_name(&name, &document.to_text(), options, files)
     {
         report.note(format_args!(
             "{}: the inputs are written as the numbers that they hold, since not all that they may \

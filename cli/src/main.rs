@@ -4,12 +4,14 @@
 //! goes into a [`report::Report`], which knows how it is shown; what stops it is a
 //! [`mistake::Mistake`].
 
+mod bake;
 mod check;
 mod compare;
 mod compile;
 mod completions;
 mod export;
 mod foreign;
+mod forms;
 mod import;
 mod importing;
 mod load;
@@ -23,6 +25,7 @@ mod report;
 mod scene;
 mod schema;
 mod sources;
+mod strips;
 mod trade;
 mod value;
 

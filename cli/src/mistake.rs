@@ -1,6 +1,7 @@
 //! What stops a verb: diagnostics and the exit status that they lead to.
 
 use mipless::Diagnostic;
+use mipless_runtime::image_file::FileError;
 use std::fmt;
 use std::path::Path;
 
@@ -52,5 +53,11 @@ impl Mistake {
             file,
             diagnostics,
         }
+    }
+}
+
+impl From<FileError> for Mistake {
+    fn from(error: FileError) -> Self {
+        Self::usage("unwritable-file", error)
     }
 }

@@ -8,6 +8,7 @@ use crate::foreign::Arguments as Importing;
 use crate::mistake::{Mistake, Status};
 use mipless::Diagnostic;
 use serde_json::{Map, Value, json};
+use std::cell::RefCell;
 use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -22,6 +23,8 @@ pub(crate) struct Report {
     status: Status,
     diagnostics: Vec<Value>,
     results: Map<String, Value>,
+    /// What is said to people, where it is not said at once.
+    held: Option<RefCell<String>>,
 }
 
 impl Report {
@@ -35,6 +38,34 @@ impl Report {
             status: Status::Done,
             diagnostics: Vec::new(),
             results: Map::new(),
+            held: None,
+        }
+    }
+
+    /// A report of a part of the work that is done beside others: what it says is held until
+    /// [`Report::absorb`] says it.
+    pub(crate) fn part(&self) -> Self {
+        let mut part = Self::new(self.json, self.root.clone(), self.importing.clone());
+        part.held = Some(RefCell::default());
+        part
+    }
+
+    /// Says what a part of the work has said; its results are left out.
+    pub(crate) fn absorb(&mut self, part: Self) {
+        self.worsen(part.status);
+        self.diagnostics.extend(part.diagnostics);
+        if let Some(held) = part.held.map(RefCell::into_inner)
+            && !held.is_empty()
+        {
+            self.complain(&held.trim_end());
+        }
+    }
+
+    /// One paragraph for people.
+    fn complain(&self, text: &dyn fmt::Display) {
+        match &self.held {
+            Some(held) => *held.borrow_mut() += &format!("{text}\n"),
+            None => complain(text),
         }
     }
 
@@ -74,8 +105,8 @@ impl Report {
             return;
         }
         match file {
-            Some(file) => complain(&diagnostic.in_file(file)),
-            None => complain(diagnostic),
+            Some(file) => self.complain(&diagnostic.in_file(file)),
+            None => self.complain(diagnostic),
         }
     }
 
@@ -95,7 +126,7 @@ impl Report {
     /// Says how it went, to people.
     pub(crate) fn note(&self, note: impl fmt::Display) {
         if !self.json {
-            complain(&note);
+            self.complain(&note);
         }
     }
 
@@ -111,16 +142,26 @@ impl Report {
         self.results.insert(key.to_owned(), value.into());
     }
 
+    /// Says all that there is so far, where more is to come.
+    pub(crate) fn flush(&mut self) {
+        if self.json {
+            self.print_json();
+        }
+    }
+
+    fn print_json(&mut self) {
+        let mut object = Map::new();
+        let diagnostics = std::mem::take(&mut self.diagnostics);
+        object.insert("diagnostics".to_owned(), Value::Array(diagnostics));
+        object.extend(std::mem::take(&mut self.results));
+        if print(&format_args!("{:#}\n", Value::Object(object))).is_err() {
+            self.status = Status::Usage;
+        }
+    }
+
     /// The end.
     pub(crate) fn finish(mut self) -> ExitCode {
-        if self.json {
-            let mut object = Map::new();
-            object.insert("diagnostics".to_owned(), Value::Array(self.diagnostics));
-            object.extend(self.results);
-            if print(&format_args!("{:#}\n", Value::Object(object))).is_err() {
-                self.status = Status::Usage;
-            }
-        }
+        self.flush();
         ExitCode::from(self.status as u8)
     }
 }

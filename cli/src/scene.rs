@@ -6,29 +6,29 @@ use crate::progress;
 use crate::report::Report;
 use crate::value;
 use clap::{Args, ValueEnum};
-use mipless::{Method, Options, Parameter, PixelFilter, Program, Texture};
+use mipless::{Interface, Method, Options, Output, Parameter, PixelFilter, Program, Texture, Type};
 use mipless_graph::{CheckOptions, suggest};
 use mipless_runtime::cpu::Renderer;
 use mipless_runtime::device::{Device, DeviceChoice};
 use mipless_runtime::image::{Image, outputs};
 use mipless_runtime::job::Job;
 use mipless_runtime::lit::{self, Hiding, Lit, Sun};
-use mipless_runtime::view::{Flat, Size, View};
-use std::path::{Path, PathBuf};
+use mipless_runtime::view::{Flat, Part, Size, View};
+use std::path::Path;
+
+/// The most pixels of a picture that is held in memory: with all their channels they fit that of common
+/// machines.
+const MOST_PIXELS: usize = 1 << 27;
 
 /// The arguments.
 #[derive(Args, Debug)]
 #[group(skip)]
 pub(crate) struct Arguments {
-    /// The graph, a JSON file; `-` is standard input
-    #[arg(value_name = "GRAPH")]
-    pub(crate) graph: PathBuf,
-
     /// The size of the picture in pixels [render: 1280x720, trade: 1280x720, compare: 480x270]
     #[arg(long, value_name = "WxH", value_parser = value::size)]
     size: Option<Size>,
 
-    /// The output of the graph; needed when there are several
+    /// The output of the graph; needed when there are several [render: `all` for all of them]
     #[arg(long, value_name = "NAME")]
     output: Option<String>,
 
@@ -98,35 +98,37 @@ pub(crate) struct Scene {
     pub(crate) filter: PixelFilter,
     /// The numbers of the graph's inputs, one a component, in order.
     pub(crate) parameters: Vec<f32>,
-    /// The position of the output that is looked at.
+    /// The position of the output that is looked at; of several, of the first.
     pub(crate) output: usize,
+    /// How many outputs are looked at, one behind the other.
+    pub(crate) count: usize,
     /// The device that evaluates.
     pub(crate) device: Device,
     /// The sun, where a material is looked at: the texture's outputs are then its parts.
     pub(crate) sun: Option<Sun>,
-    falls_back: bool,
-}
-
-/// What was evaluated, without light and background.
-#[derive(Debug)]
-pub(crate) struct Frame {
-    /// The mean of each channel.
-    pub(crate) mean: Image,
-    /// The variance of each channel, where it was asked for.
-    pub(crate) variance: Option<Image>,
+    /// Whether the CPU takes the place of a device that fails.
+    pub(crate) falls_back: bool,
 }
 
 impl Arguments {
     /// Loads the graph, checks the arguments against it, and opens the device.
     pub(crate) fn open(
         &self,
+        graph: &Path,
         check: &CheckOptions,
         default: Size,
         report: &mut Report,
     ) -> Result<Scene, Mistake> {
         self.check()?;
-        let texture = load::load(&self.graph, check, report)?;
-        self.scene(texture, default)
+        let texture = load::load(graph, check, report)?;
+        let scene = self.scene(graph, texture, default)?;
+        scene.fits(scene.size)?;
+        Ok(scene)
+    }
+
+    /// Whether all outputs of a graph are meant.
+    pub(crate) fn is_all(&self) -> bool {
+        self.output.as_deref() == Some("all")
     }
 
     /// Checks what can be checked without the graph.
@@ -157,7 +159,12 @@ impl Arguments {
     }
 
     /// A scene of a graph that is already loaded.
-    pub(crate) fn scene(&self, texture: Texture, default: Size) -> Result<Scene, Mistake> {
+    pub(crate) fn scene(
+        &self,
+        graph: &Path,
+        texture: Texture,
+        default: Size,
+    ) -> Result<Scene, Mistake> {
         let parameters = settings(&texture, &self.settings)?;
         let material = match self.output {
             Some(_) => None,
@@ -170,7 +177,7 @@ impl Arguments {
         };
         let is_lit = material.is_some();
         let texture = match material {
-            Some(material) => material.map_err(|wrong| Mistake::graph(&self.graph, wrong))?,
+            Some(material) => material.map_err(|wrong| Mistake::graph(graph, wrong))?,
             None if self.light.is_some() => {
                 return Err(Mistake::usage(
                     "no-surface",
@@ -180,11 +187,20 @@ impl Arguments {
             }
             None => texture,
         };
+        let mut count = 1;
         let (texture, output) = if is_lit {
             (texture, 0)
         } else {
-            let output = output(&texture, self.shown(&texture))?;
-            if texture.checked().graph().materials.is_empty() {
+            // An output by the name `all` is an output.
+            let all = self.is_all() && !texture.outputs().iter().any(|o| o.name == "all");
+            if all {
+                count = texture.outputs().len();
+            }
+            let output = match all {
+                true => 0,
+                false => output(&texture, self.shown(graph, &texture))?,
+            };
+            if all || texture.checked().graph().materials.is_empty() {
                 (texture, output)
             } else {
                 // Of a material most parts are read one by one, and each costs what it reads.
@@ -211,6 +227,7 @@ impl Arguments {
             filter: self.pixel_filter,
             parameters,
             output,
+            count,
             device,
             falls_back: self.device == DeviceName::Auto,
         })
@@ -220,7 +237,7 @@ impl Arguments {
 impl Arguments {
     /// The output that is asked for: of a material that another tool wrote its colour, where nothing
     /// else is named.
-    fn shown(&self, texture: &Texture) -> Option<&str> {
+    fn shown<'a>(&'a self, graph: &Path, texture: &'a Texture) -> Option<&'a str> {
         const COLORS: [&str; 5] = [
             "base_color",
             "albedo",
@@ -228,7 +245,7 @@ impl Arguments {
             "emission_color",
             "out",
         ];
-        let is_foreign = mipless_import::Format::of(&self.graph).is_some();
+        let is_foreign = mipless_import::Format::of(graph).is_some();
         let several = texture.outputs().len() > 1;
         let color = || {
             let has = |name: &&&str| texture.outputs().iter().any(|output| output.name == **name);
@@ -258,6 +275,35 @@ impl Scene {
         }
     }
 
+    /// The names of the outputs that are looked at.
+    pub(crate) fn outputs(&self) -> Vec<String> {
+        match self.sun {
+            Some(_) => vec![self.output_name().to_owned()],
+            None => self
+                .shown()
+                .iter()
+                .map(|output| output.name.clone())
+                .collect(),
+        }
+    }
+
+    /// Their types.
+    pub(crate) fn types(&self) -> Vec<Type> {
+        match self.sun {
+            Some(_) => vec![Type::Color3],
+            None => self.shown().iter().map(|output| output.ty).collect(),
+        }
+    }
+
+    /// Whether the output at `index` of them is looked at as it is.
+    pub(crate) fn is_color(&self, index: usize) -> bool {
+        self.sun.is_some() || self.texture.is_color(&self.shown()[index])
+    }
+
+    fn shown(&self) -> &[Output] {
+        &self.texture.outputs()[self.output..self.output + self.count]
+    }
+
     /// Refuses a material where methods are compared on one number after the other.
     pub(crate) fn needs_part(&self) -> Result<(), Mistake> {
         match self.sun {
@@ -274,12 +320,50 @@ impl Scene {
         self.sun.map(|sun| Lit::new(&self.view, sun, hiding))
     }
 
+    /// Refuses a picture that does not fit the memory of common machines.
+    pub(crate) fn fits(&self, size: Size) -> Result<(), Mistake> {
+        if size.pixels() <= MOST_PIXELS {
+            return Ok(());
+        }
+        let message = format!(
+            "a picture of {} pixels is held in memory, and has at most {MOST_PIXELS}",
+            size.pixels()
+        );
+        Err(Mistake::usage("too-large", message)
+            .help("render a .png without `--moments`, which is written as it is made, or a `--tile` of it"))
+    }
+
     /// The picture that people see.
     pub(crate) fn present(&self, image: &Image) -> Image {
+        self.present_part(image, Part::all(self.size))
+    }
+
+    /// A part of it.
+    pub(crate) fn present_part(&self, image: &Image, part: Part) -> Image {
         match self.sun {
-            Some(_) => self.view.present_lit(image),
-            None => self.view.present(image),
+            Some(_) => self.view.present_lit_part(image, part),
+            None => self.view.present_part(image, part),
         }
+    }
+
+    /// The pictures that people see of all results over a part.
+    pub(crate) fn pictures(
+        &self,
+        interface: &Interface,
+        lit: Option<&Lit>,
+        all: &Image,
+        part: Part,
+    ) -> Vec<Image> {
+        if let Some(lit) = lit {
+            return vec![self.present_part(&lit.light_part(interface, all, part), part)];
+        }
+        let shown = outputs(interface)
+            .into_iter()
+            .skip(self.output)
+            .take(self.count);
+        shown
+            .map(|place| self.present_part(&all.mean(&place), part))
+            .collect()
     }
 
     /// Evaluates the material over the view, and lights it.
@@ -289,55 +373,58 @@ impl Scene {
         lit: &Lit,
         report: &mut Report,
     ) -> Result<Image, Mistake> {
-        let (program, all) = self.results(options, report)?;
+        let (program, all) = self.results(options, Part::all(self.size), report)?;
         Ok(lit.light(&program.interface, &all))
     }
 
-    /// Evaluates the graph over the view. A GPU that was chosen on its own and fails is replaced by
+    /// Evaluates the output that is looked at, over the view, without light and background. A GPU that was chosen on its own and fails is replaced by
     /// the CPU, with a warning.
     pub(crate) fn evaluate(
         &mut self,
         options: &Options,
         report: &mut Report,
-    ) -> Result<Frame, Mistake> {
-        let (program, all) = self.results(options, report)?;
-        let place = &outputs(&program.interface)[self.output];
-        Ok(Frame {
-            mean: all.mean(place),
-            variance: all.variance(place),
-        })
+    ) -> Result<Image, Mistake> {
+        let (program, all) = self.results(options, Part::all(self.size), report)?;
+        Ok(all.mean(&outputs(&program.interface)[self.output]))
     }
 
-    /// The program, and all of its results.
-    fn results(
+    /// The program, and all of its results over a part of the picture.
+    pub(crate) fn results(
         &mut self,
         options: &Options,
+        part: Part,
         report: &mut Report,
     ) -> Result<(Program, Image), Mistake> {
         let program = self.texture.compile(options);
         let label = options.method.to_string();
-        let all = match self.on_gpu(&program, &label, report) {
+        let all = match self.on_gpu(&program, part, &label, report) {
             Some(Ok(image)) => image,
             Some(Err(error)) if self.falls_back => {
                 let message = format!("{}: {error}; the CPU evaluates instead", self.device);
                 report.warn("device-failed", message);
                 self.device = Device::Cpu;
-                self.on_cpu(&program, &label, report)?
+                self.on_cpu(&program, part, &label, report)?
             }
             Some(Err(error)) => {
                 let message = format!("{}: {error}", self.device);
                 return Err(Mistake::usage("device-failed", message)
                     .help("`--device cpu` works everywhere"));
             }
-            None => self.on_cpu(&program, &label, report)?,
+            None => self.on_cpu(&program, part, &label, report)?,
         };
         Ok((program, all))
     }
 
-    fn on_cpu(&self, program: &Program, label: &str, report: &Report) -> Result<Image, Mistake> {
+    fn on_cpu(
+        &self,
+        program: &Program,
+        part: Part,
+        label: &str,
+        report: &Report,
+    ) -> Result<Image, Mistake> {
         let mut renderer = Renderer::<f32>::new(program);
         renderer.set_parameters(&self.parameters);
-        let render = |job: Job<'_>| renderer.render(&self.view, self.size, None, job);
+        let render = |job: Job<'_>| renderer.render_part(&self.view, part, job);
         progress::watch(report, label, render)
             .map_err(|error| Mistake::usage("render-failed", error))
     }
@@ -346,6 +433,7 @@ impl Scene {
     fn on_gpu(
         &self,
         program: &Program,
+        part: Part,
         label: &str,
         report: &Report,
     ) -> Option<Result<Image, mipless_runtime::gpu::GpuError>> {
@@ -355,7 +443,7 @@ impl Scene {
         let render = |job: Job<'_>| {
             let pipeline = gpu.pipeline(program)?;
             gpu.set_parameters(&pipeline, &self.parameters)?;
-            Ok(gpu.render(&pipeline, &self.view, self.size, job)?.0)
+            Ok(gpu.render_part(&pipeline, &self.view, part, job)?.0)
         };
         Some(progress::watch(report, label, render))
     }
@@ -396,7 +484,7 @@ fn settings(texture: &Texture, settings: &[(String, String)]) -> Result<Vec<f32>
 }
 
 /// The inputs with their types, defaults and ranges.
-fn inputs(parameters: &[Parameter]) -> String {
+pub(crate) fn inputs(parameters: &[Parameter]) -> String {
     if parameters.is_empty() {
         return "the graph has no inputs".to_owned();
     }

@@ -36,13 +36,16 @@ impl Sources {
     }
 }
 
+/// Where a file is without links, which need not exist yet; as it is named where its folder is not there.
+pub(crate) fn place(path: &Path) -> PathBuf {
+    let place = fs::canonicalize(path).ok().or_else(|| {
+        let folder = fs::canonicalize(folder_of(path)).ok()?;
+        Some(folder.join(path.file_name()?))
+    });
+    place.unwrap_or_else(|| path.to_owned())
+}
+
 /// Whether two paths are one file, which need not exist yet.
 pub(crate) fn is_same(first: &Path, second: &Path) -> bool {
-    let place = |path: &Path| {
-        fs::canonicalize(path).ok().or_else(|| {
-            let folder = fs::canonicalize(folder_of(path)).ok()?;
-            Some(folder.join(path.file_name()?))
-        })
-    };
-    first == second || place(first).is_some_and(|first| place(second) == Some(first))
+    place(first) == place(second)
 }

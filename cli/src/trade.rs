@@ -5,13 +5,12 @@ use crate::plan;
 use crate::report::Report;
 use crate::scene;
 use crate::sources::Sources;
-use crate::value;
 use clap::Args;
 use mipless::Method;
 use mipless_graph::CheckOptions;
 use mipless_runtime::chart::{Chart, Mark, draw};
 use mipless_runtime::device::Device;
-use mipless_runtime::image_file::{Bits, Format, encode, write_all};
+use mipless_runtime::image_file::{Bits, Format, Space, encode, write_all};
 use mipless_runtime::plan::{Measurement, TRUTH, front};
 use mipless_runtime::view::Size;
 use serde_json::{Value, json};
@@ -21,6 +20,10 @@ use std::path::PathBuf;
 /// The arguments of `trade`.
 #[derive(Args, Debug)]
 pub(crate) struct Arguments {
+    /// The graph, a JSON file; `-` is standard input
+    #[arg(value_name = "GRAPH")]
+    graph: PathBuf,
+
     #[command(flatten)]
     scene: scene::Arguments,
 
@@ -58,13 +61,14 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
         return Err(Mistake::usage("unwritable-file", message));
     }
     let default = Size::new(1280, 720);
-    let scene = arguments
-        .scene
-        .open(&CheckOptions::default(), default, report)?;
+    let scene =
+        arguments
+            .scene
+            .open(&arguments.graph, &CheckOptions::default(), default, report)?;
     scene.needs_part()?;
     let (data, picture) = (out.join("trade.json"), out.join("trade.png"));
     let mut read = Sources::default();
-    read.add_graph(&arguments.scene.graph, &scene.texture);
+    read.add_graph(&arguments.graph, &scene.texture);
     [&data, &picture]
         .into_iter()
         .try_for_each(|file| read.guard(file))?;
@@ -93,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
         "output": scene.output_name(),
         "view": scene.view.name(),
         "size": [scene.size.width, scene.size.height],
-        "pixel_filter": value::pixel_filter_name(scene.filter),
+        "pixel_filter": scene.filter.to_string(),
         "device": runs_on,
         "truth": TRUTH.to_string(),
         "error_unit": "sRGB, clamped, root mean square",
@@ -119,7 +123,8 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
         marks: &marks,
     });
     let unwritable = |error: &dyn std::fmt::Display| Mistake::usage("unwritable-file", error);
-    let bytes = encode(&picture, &chart, Format::Png(Bits::Eight)).map_err(|e| unwritable(&e))?;
+    let bytes = encode(&picture, &chart, Format::Png(Bits::Eight, Space::Srgb))
+        .map_err(|e| unwritable(&e))?;
     let files = [
         (data, format!("{found:#}\n").into_bytes()),
         (picture, bytes),

@@ -4,10 +4,8 @@ use mipless::PixelFilter;
 use mipless_runtime::lit::Sun;
 use mipless_runtime::view::Size;
 
-/// The longest side of a picture, in pixels.
-pub(crate) const LONGEST: u32 = 16384;
-/// The most pixels of a picture: with all their channels they fit the memory of common machines.
-const MOST_PIXELS: usize = 1 << 27;
+/// The longest side of a picture, in pixels: a few rows of it are held in memory.
+pub(crate) const LONGEST: u32 = 1 << 20;
 /// The widest Gaussian pixel filter, as its standard deviation in pixels.
 const WIDEST: f32 = 64.0;
 
@@ -23,11 +21,23 @@ pub(crate) fn size(text: &str) -> Result<Size, String> {
             Err(form())
         }
     };
-    let size = Size::new(side(width)?, side(height)?);
-    if size.pixels() > MOST_PIXELS {
-        return Err(format!("at most {MOST_PIXELS} pixels in all"));
+    Ok(Size::new(side(width)?, side(height)?))
+}
+
+/// Reads `2,0/8x4`: a column and a row, of so many columns and rows.
+pub(crate) fn tile(text: &str) -> Result<[[u32; 2]; 2], String> {
+    let form = || "write COLUMN,ROW/COLUMNSxROWS, counted from 0, such as 2,0/8x4".to_owned();
+    let pair = |text: &str, between: &[char]| {
+        let (first, second) = text.split_once(between)?;
+        Some([first.trim().parse().ok()?, second.trim().parse().ok()?])
+    };
+    let (place, count) = text.split_once('/').ok_or_else(form)?;
+    let place = pair(place, &[',']).ok_or_else(form)?;
+    let count = pair(count, &['x', 'X', '×']).ok_or_else(form)?;
+    if place[0] >= count[0] || place[1] >= count[1] {
+        return Err(format!("there is no such tile: {}", form()));
     }
-    Ok(size)
+    Ok([place, count])
 }
 
 /// Reads `0,0,1,1`.
@@ -84,14 +94,6 @@ pub(crate) fn pixel_filter(text: &str) -> Result<PixelFilter, String> {
     }
 }
 
-/// What [`pixel_filter`] reads.
-pub(crate) fn pixel_filter_name(filter: PixelFilter) -> String {
-    match filter {
-        PixelFilter::Gaussian(sd) => format!("gaussian:{sd}"),
-        PixelFilter::Box => "box".to_owned(),
-    }
-}
-
 /// Reads a number above 0, such as a tolerance.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -117,17 +119,19 @@ mod tests {
     #[test]
     fn sizes_are_sensible() {
         assert_eq!(size("1280x720"), Ok(Size::new(1280, 720)));
-        for wrong in [
-            "0x5",
-            "5x0",
-            "5",
-            "x",
-            "-1x5",
-            "16385x1",
-            "16384x16384",
-            "99999999999x1",
-        ] {
+        for wrong in ["0x5", "5x0", "5", "x", "-1x5", "1048577x1", "99999999999x1"] {
             assert!(size(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(size("65536x4096"), Ok(Size::new(65_536, 4096)));
+    }
+
+    #[test]
+    fn tiles_are_some_of_their_number() {
+        assert_eq!(tile("2, 0/8x4"), Ok([[2, 0], [8, 4]]));
+        for wrong in [
+            "2,0", "8,0/8x4", "0,4/8x4", "-1,0/8x4", "a,b/1x1", "0,0/0x1", "1/2",
+        ] {
+            assert!(tile(wrong).is_err(), "{wrong}");
         }
     }
 
@@ -162,7 +166,7 @@ mod tests {
     fn filters_are_read_as_they_are_named() {
         for name in ["box", "gaussian:0.5", "gaussian:2"] {
             assert_eq!(
-                pixel_filter(name).map(pixel_filter_name),
+                pixel_filter(name).map(|filter| filter.to_string()),
                 Ok(name.to_owned())
             );
         }

@@ -8,6 +8,8 @@
 
 pub mod cpu;
 pub mod float;
+#[cfg(feature = "targets")]
+pub mod form;
 pub mod ir;
 mod lower;
 pub mod moments;
@@ -18,5 +20,5 @@ pub mod wgsl;
 pub use lower::{
     Audit, AuditedBand, AuditedOutput, Bundle, Ensemble, Image, Lower, Method, NodeDef, NodeRule,
     Options, Over, ParseMethodError, PartNames, PixelFilter, Remedy, Replaced, Slopes, SumOfSteps,
-    Upstream, Widened, audit, compile, jumps, pairs,
+    Upstream, Widened, audit, compile, compile_audited, jumps, pairs,
 };

@@ -91,12 +91,27 @@ impl Default for Options {
 /// # Panics
 /// If `catalogue` is not the one that the graph was resolved with.
 pub fn compile(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> Program {
+    compile_audited(checked, catalogue, options).0
+}
+
+/// The same, with what `auto` has found out about itself; other methods do not look.
+///
+/// # Panics
+/// If `catalogue` is not the one that the graph was resolved with.
+pub fn compile_audited(
+    checked: &Checked,
+    catalogue: &[NodeDef],
+    options: &Options,
+) -> (Program, Option<Audit>) {
     let graph = checked.graph();
     let mut facts = Facts::of(graph);
     facts.mixtures = mixture::found(graph, catalogue, options, &facts);
     match options.method {
-        Method::Auto => audit::audited(checked, catalogue, options, facts).0,
-        _ => program(graph, catalogue, options, &facts),
+        Method::Auto => {
+            let (program, audit) = audit::audited(checked, catalogue, options, facts);
+            (program, Some(audit))
+        }
+        _ => (program(graph, catalogue, options, &facts), None),
     }
 }
 
@@ -109,9 +124,8 @@ pub fn audit(checked: &Checked, catalogue: &[NodeDef], options: &Options) -> Aud
         method: Method::Auto,
         ..*options
     };
-    let mut facts = Facts::of(checked.graph());
-    facts.mixtures = mixture::found(checked.graph(), catalogue, &options, &facts);
-    audit::audited(checked, catalogue, &options, facts).1
+    let (_, audit) = compile_audited(checked, catalogue, &options);
+    audit.expect("`auto` is audited")
 }
 
 /// The program of a graph of which this is known.

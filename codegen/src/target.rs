@@ -1,16 +1,22 @@
-//! Targets: validation of emitted WGSL and its translation, both by naga, and the manifest.
+//! Targets: validation of emitted WGSL and its translation, both by naga.
 //!
-//! All but the manifest needs the feature `targets`: naga is much to build for a host that takes the
-//! WGSL as it is.
+//! It needs the feature `targets`: naga is much to build for a host that takes the WGSL as it is.
 
-mod manifest;
+#[cfg(feature = "targets")]
+mod glsl;
+#[cfg(feature = "targets")]
+mod included;
 #[cfg(feature = "targets")]
 mod translate;
 #[cfg(feature = "targets")]
 mod validate;
 
-pub use manifest::{Manifest, ManifestOutput, ManifestParameter, ManifestTable, Range};
+#[cfg(feature = "targets")]
+pub(crate) use included::items;
 #[cfg(feature = "targets")]
 pub use translate::{Target, TranslateError, Translated, translate};
 #[cfg(feature = "targets")]
 pub use validate::{ValidateError, Validated, validate};
+
+/// The range of a graph's input: what the document says of it.
+pub type Range = (Option<f32>, Option<f32>);

@@ -15,7 +15,8 @@
 //! - With [`Interface::moments`](crate::ir::Interface::moments), `base_color_variance` and so on
 //!   follow all means. A boolean parameter is a `u32`, not 0 for true.
 //! - No derivative built-ins and no globals; one binding, [`TABLES_BINDING`], if there are tables.
-//!   [`Options`] moves all bindings to another group and to higher numbers.
+//!   [`Options`] moves all bindings to another group and to higher numbers, and makes of the tables'
+//!   buffer a texture, or a texture that the function takes as its first argument.
 //! - Every other name begins with the texture's; none is a reserved word of WGSL, GLSL, HLSL or MSL,
 //!   and none ends in a digit, so that naga's writers and naga_oil leave it as it is.
 //! - No function has more than about 200 statements: long ones call their parts.
@@ -27,7 +28,7 @@
 //! | 0 storage, read | `array<Footprint>`: 32 bytes each: `cell` 2 × i32, `uv`, `du`, `dv` 2 × f32 each; where the position is read, `array<Pixel>`: 96 bytes each, the footprint and then `cell` 3 × i32, `xyz`, `dx`, `dy` 3 × f32 each, each in 16 bytes |
 //! | 1 uniform | the struct of parameters, laid out as [`Shader::parameters`] says and packed by [`Shader::pack_parameters`]; absent without parameters |
 //! | 2 storage, read and write | `array<f32>`: for each footprint all scalars of all outputs in order, without padding; integers and truth values (0, 1) as f32 |
-//! | 3 storage, read | the tables, [`Tables::data`]; absent without tables |
+//! | 3 storage, read | the tables, [`Tables::data`]; absent without tables; as a texture ([`TableForm`]) [`Tables::texels`], in rows of [`TABLE_WIDTH`], one `f32` a texel |
 //!
 //! Pixel `index` is invocation `(index % 65536, index / 65536)`, so dispatch [`workgroups`]. What is
 //! not below the length of binding 0 does nothing.
@@ -56,6 +57,7 @@ mod reserved;
 mod shading;
 mod spelled;
 mod statement;
+mod table;
 mod wrapped;
 
 pub(crate) use gap::Spelled;
@@ -65,8 +67,10 @@ use crate::ir::{FunctionId, Inst, Numbers, Program, Type};
 pub use entry::DECLARATIONS;
 use entry::{Names, entry_text, face, push_entry_point, push_structs};
 use function::{Context, Signature};
-use name::{Scope, callable, camel, internal};
+pub(crate) use name::camel;
+use name::{Scope, callable, internal};
 use serde::Serialize;
+pub use table::{TABLE_WIDTH, TableForm};
 
 /// The binding of the footprints, in group 0.
 pub const FOOTPRINTS_BINDING: u32 = 0;
@@ -106,7 +110,7 @@ pub enum Entry {
     Compute,
 }
 
-/// How to emit. The default is the function alone, with its tables at binding 3 of group 0.
+/// How to emit. The default is the function alone, with its tables in a buffer at binding 3 of group 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// The entry point.
@@ -118,6 +122,8 @@ pub struct Options {
     /// Whether `Footprint` and `Position` are declared elsewhere, so that several textures stand in
     /// one module: the text is valid only behind [`DECLARATIONS`].
     pub shared_footprint: bool,
+    /// Where the tables are read from, if there are any.
+    pub tables: TableForm,
 }
 
 impl From<Entry> for Options {
@@ -226,6 +232,21 @@ impl Tables {
             .flat_map(|numbers| numbers.iter().copied())
             .collect()
     }
+
+    /// How many rows of [`TABLE_WIDTH`] numbers a texture of them has.
+    pub fn rows(&self) -> u32 {
+        let last = self.entries.last();
+        last.map_or(0, |(_, first, length)| {
+            (first + length).div_ceil(TABLE_WIDTH)
+        })
+    }
+
+    /// The same numbers as a texture's texels, row by row: 0 behind the last.
+    pub fn texels(&self) -> Vec<f32> {
+        let mut texels = self.data();
+        texels.resize((self.rows() * TABLE_WIDTH) as usize, 0.0);
+        texels
+    }
 }
 
 /// WGSL text and what a host needs to know of it.
@@ -249,6 +270,14 @@ pub struct Shader {
     pub outputs: Vec<OutputField>,
     /// The contents of the binding of tables, if there are any.
     pub tables: Option<Tables>,
+    /// Where they are read from.
+    pub table_form: TableForm,
+    /// The struct of outputs.
+    pub outputs_struct: String,
+    /// The struct of parameters, which is declared if there are any.
+    pub parameters_struct: String,
+    /// The variable of the tables, which is declared if there are any and they are no argument.
+    pub tables_name: String,
     /// Whether the function takes the position in space as its second argument.
     pub position: bool,
 }
@@ -366,21 +395,28 @@ fn emitted(program: &Program, options: &Options, is_shaded: bool) -> Shader {
     let offsets: Vec<u32> = (tables.iter())
         .flat_map(|t| t.entries.iter().map(|e| e.1))
         .collect();
+    let form = options.tables;
+    let reader = (tables.is_some() && form != TableForm::Storage)
+        .then(|| globals.take(format!("{stem}_number")));
     let mut context = Context {
         module,
         signatures: &signatures,
         globals,
-        tables: &names.tables,
+        tables: &table::Reading::new(module, form, &names.tables, reader),
         table_offsets: &offsets,
         out: String::with_capacity(1024 + 40 * instructions),
     };
-    push_structs(&mut context.out, &names, &face, tables.is_some(), options);
+    push_structs(&mut context.out, &names, &face, options);
+    if tables.is_some() {
+        context.tables.push(&mut context.out, options);
+    }
     let written: Vec<FunctionId> = (0..last)
         .filter(|&index| reached[index])
         .map(FunctionId::from_index)
         .collect();
     apart::write(&mut context, &written);
-    let text = entry_text(program, &names, &face);
+    let takes_tables = context.tables.is_argument_of(FunctionId::from_index(last));
+    let text = entry_text(program, &names, &face, takes_tables);
     function::write(&mut context, FunctionId::from_index(last), Some(&text));
     let shading = if is_shaded {
         shading::push(&mut context, &names, &face, stem)
@@ -393,16 +429,22 @@ fn emitted(program: &Program, options: &Options, is_shaded: bool) -> Shader {
         out: mut source,
         ..
     } = context;
-    let (entry_point, mut bindings) =
-        push_entry_point(&mut source, &mut globals, options, &names, &face);
+    let (entry_point, mut bindings) = push_entry_point(
+        &mut source,
+        &mut globals,
+        options,
+        &names,
+        &face,
+        takes_tables,
+    );
     source.truncate(source.trim_end().len());
     source.push('\n');
     let source = wrapped::wrapped(source);
-    if tables.is_some() {
+    if tables.is_some() && (form != TableForm::Argument || entry_point.is_some()) {
         bindings.push(Binding {
             group: options.group,
             binding: options.binding + TABLES_BINDING,
-            name: names.tables,
+            name: names.tables.clone(),
             kind: BindingKind::Tables,
         });
     }
@@ -417,6 +459,10 @@ fn emitted(program: &Program, options: &Options, is_shaded: bool) -> Shader {
         outputs: face.outputs,
         position: face.position,
         tables,
+        table_form: form,
+        outputs_struct: names.outputs,
+        parameters_struct: names.parameters,
+        tables_name: names.tables,
     }
 }
 

@@ -175,4 +175,38 @@ impl Graph {
             ..self.clone()
         }
     }
+    /// The graph in which these inputs are constants for good: what follows from them alone is worked
+    /// out when it is compiled, and nobody can set them any more.
+    ///
+    /// # Panics
+    /// If a literal is not of its input's type: a bug of the caller.
+    pub fn with_constants(&self, constants: &[(ParameterId, Literal)]) -> Self {
+        let constant = |id: ParameterId| constants.iter().find(|(of, _)| *of == id);
+        let mut graph = self.clone();
+        // Where each of the inputs that are left stands now.
+        let mut places = Vec::with_capacity(self.parameters.len());
+        graph.parameters.clear();
+        for (index, parameter) in (0..).zip(&self.parameters) {
+            places.push(ParameterId(graph.parameters.len() as u32));
+            match constant(ParameterId(index)) {
+                Some((_, literal)) => assert_eq!(
+                    literal.ty(),
+                    parameter.ty,
+                    "the type of the input {}",
+                    parameter.name
+                ),
+                None => graph.parameters.push(parameter.clone()),
+            }
+        }
+        let nodes = graph.nodes.iter_mut().chain(&mut graph.materials);
+        for input in nodes.flat_map(|node| &mut node.inputs) {
+            if let Source::Parameter(id) = input.source {
+                input.source = match constant(id) {
+                    Some((_, literal)) => Source::Literal(literal.clone()),
+                    None => Source::Parameter(places[id.index()]),
+                };
+            }
+        }
+        graph
+    }
 }

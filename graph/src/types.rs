@@ -158,6 +158,16 @@ impl Literal {
         Self::Numbers(Type::Float, [x, 0.0, 0.0, 0.0])
     }
 
+    /// The type of the value: [`Type::String`] for stops and matrices too.
+    pub const fn ty(&self) -> Type {
+        match self {
+            Self::Numbers(ty, _) => *ty,
+            Self::Integer(_) => Type::Integer,
+            Self::Boolean(_) => Type::Boolean,
+            Self::Text(_) | Self::Stops(_) | Self::Matrix(_) => Type::String,
+        }
+    }
+
     /// The numbers of the value, one a component; empty for text, stops and matrices.
     pub fn numbers(&self) -> Vec<f32> {
         match self {

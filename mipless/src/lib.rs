@@ -6,8 +6,8 @@
 //! - `files` decodes the pictures that graphs name ([`Texture::from_file`], [`Texture::with_files`]).
 //!   Without it, a graph that names one has a located mistake, `feature-off`.
 //! - `targets` validates shaders and translates them to SPIR-V, GLSL, HLSL and MSL by naga
-//!   (`target::validate`, `target::translate`). Without it there are WGSL and its
-//!   [`target::Manifest`], and naga is not built.
+//!   (`target::validate`, `target::translate`, and all files of a texture, `artifact::Artifact`).
+//!   Without it there are WGSL and its [`manifest::Manifest`], and naga is not built.
 //! - `import` reads MaterialX, Material Maker and glTF documents into graphs (`import::import`).
 //!
 //! A tool that only wants WGSL of graphs without pictures says `default-features = false`, and
@@ -118,8 +118,11 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+#[cfg(feature = "targets")]
+pub mod artifact;
 mod evaluator;
 mod files;
+pub mod manifest;
 #[cfg(feature = "files")]
 mod picture;
 mod resource;
@@ -134,7 +137,9 @@ pub use files::{
     Files, Folder, LARGEST_FILE, LARGEST_PICTURE, LARGEST_SIDE, NoFiles, Within, name_of_file,
 };
 pub use mipless_codegen::cpu::Footprint;
-pub use mipless_codegen::ir::Program;
+#[cfg(feature = "targets")]
+pub use mipless_codegen::form;
+pub use mipless_codegen::ir::{Interface, Program};
 pub use mipless_codegen::{
     Audit, AuditedBand, AuditedOutput, Method, NodeDef, Options, PixelFilter, Remedy, Replaced,
     target, wgsl,
@@ -145,4 +150,4 @@ pub use mipless_graph::{
     parse_setting, schema,
 };
 pub use mipless_nodes::catalogue;
-pub use texture::{FromFileError, Texture, specs};
+pub use texture::{BakeError, FromFileError, Texture, specs};

@@ -7,8 +7,8 @@ use std::io;
 use std::path::Path;
 
 use mipless_graph::{
-    CheckOptions, Checked, Diagnostic, Document, Graph, NodeSpec, Output, Parameter, Signal, check,
-    load,
+    CheckOptions, Checked, Diagnostic, Document, Graph, NodeSpec, Output, Parameter, ParameterId,
+    SettingError, Signal, Type, check, load,
 };
 
 /// The specs of the catalogue.
@@ -43,6 +43,32 @@ impl fmt::Display for FromFileError {
 }
 
 impl std::error::Error for FromFileError {}
+
+/// Why an input cannot be made a constant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BakeError {
+    /// The graph has no input of this name.
+    NoInput(String),
+    /// The input of this name does not take the value.
+    Value(String, SettingError),
+    /// The graph has mistakes with these values.
+    Mistakes(Vec<Diagnostic>),
+}
+
+impl fmt::Display for BakeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoInput(name) => write!(f, "the graph has no input `{name}`"),
+            Self::Value(name, error) => write!(f, "input `{name}`: {error}"),
+            Self::Mistakes(mistakes) => {
+                let first = mistakes.iter().find(|mistake| mistake.is_error());
+                first.map_or(Ok(()), |mistake| mistake.fmt(f))
+            }
+        }
+    }
+}
+
+impl std::error::Error for BakeError {}
 
 /// A texture graph without mistakes.
 #[derive(Clone, Debug)]
@@ -198,6 +224,12 @@ impl Texture {
         &self.checked.graph().outputs
     }
 
+    /// Whether people look at an output as it is: a colour that is no normal or the like.
+    pub fn is_color(&self, output: &Output) -> bool {
+        let is_mean = self.checked.graph().node(output.node).is_mean();
+        is_mean && matches!(output.ty, Type::Color3 | Type::Color4)
+    }
+
     /// The texture with those of its outputs alone that have these names, in their order: what only others
     /// need is not computed.
     ///
@@ -224,6 +256,40 @@ impl Texture {
     /// Compiles the graph for both back ends.
     pub fn compile(&self, options: &Options) -> Program {
         mipless_codegen::compile(&self.checked, crate::catalogue(), options)
+    }
+
+    /// The same, with what [`Texture::audit`] says of it, where the method is `auto`.
+    pub fn compile_audited(&self, options: &Options) -> (Program, Option<Audit>) {
+        mipless_codegen::compile_audited(&self.checked, crate::catalogue(), options)
+    }
+
+    /// The texture in which these inputs are constants for good, written as on the command line: `0.5`,
+    /// `0.1,0.2,0.3`, `#rrggbb`, `true`. What follows from them alone is worked out when it is compiled.
+    ///
+    /// # Errors
+    /// [`BakeError`] of an input that is not there or does not take its value, and of a graph that has
+    /// mistakes with it.
+    pub fn baked(
+        &self,
+        settings: &[(&str, &str)],
+        options: &CheckOptions,
+    ) -> Result<Self, BakeError> {
+        let graph = self.checked.graph();
+        let mut constants = Vec::new();
+        for &(name, text) in settings {
+            let index = (0..).zip(&graph.parameters).find(|(_, p)| p.name == name);
+            let Some((index, parameter)) = index else {
+                return Err(BakeError::NoInput(name.to_owned()));
+            };
+            let value = parameter.parse(text);
+            let value = value.map_err(|error| BakeError::Value(name.to_owned(), error))?;
+            constants.push((ParameterId(index), value));
+        }
+        let checked = check(graph.with_constants(&constants), options);
+        Ok(Self {
+            checked: checked.map_err(BakeError::Mistakes)?,
+            ..self.clone()
+        })
     }
 
     /// What `auto` does where closed forms are wrong, and how far it is off: measured on the CPU at a

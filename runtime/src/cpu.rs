@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::image::{Image, result_names};
 use crate::job::{Cancelled, Job, Tally};
-use crate::view::{Size, View};
+use crate::view::{Part, Size, View};
 
 /// Why a CPU render has no image.
 #[derive(Debug)]
@@ -99,16 +99,41 @@ impl<F: Float> Renderer<F> {
         job: Job<'_>,
     ) -> Result<Image<F>, CpuError> {
         let Some(threads) = threads else {
-            return Ok(self.tiles(view, size, job)?);
+            return Ok(self.tiles(view, Part::all(size), job)?);
         };
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())
             .build()
             .map_err(CpuError::Threads)?;
-        Ok(pool.install(|| self.tiles(view, size, job))?)
+        Ok(pool.install(|| self.tiles(view, Part::all(size), job))?)
     }
 
-    fn tiles(&self, view: &View, size: Size, job: Job<'_>) -> Result<Image<F>, Cancelled> {
+    /// Renders a part of a picture with all cores, to the bit as it stands in the whole.
+    ///
+    /// # Errors
+    /// If the job is cancelled.
+    pub fn render_part(&self, view: &View, part: Part, job: Job<'_>) -> Result<Image<F>, CpuError> {
+        Ok(self.tiles(view, part, job)?)
+    }
+
+    /// The same on the calling thread.
+    pub fn strip(&self, view: &View, part: Part) -> Image<F> {
+        let names = result_names(&self.interface);
+        let pixels = part.size.pixels();
+        let mut channels = vec![vec![F::default(); pixels]; names.len()];
+        let mut worker = Worker::new(self);
+        for start in (0..pixels).step_by(TILE) {
+            let end = pixels.min(start + TILE);
+            let mut results: Vec<&mut [F]> = (channels.iter_mut())
+                .map(|channel| &mut channel[start..end])
+                .collect();
+            worker.tile(view, part, start..end, &mut results);
+        }
+        Image::new(part.size, &names, channels)
+    }
+
+    fn tiles(&self, view: &View, part: Part, job: Job<'_>) -> Result<Image<F>, Cancelled> {
+        let size = part.size;
         let names = result_names(&self.interface);
         let mut channels = vec![vec![F::default(); size.pixels()]; names.len()];
         let mut tiles: Vec<Vec<&mut [F]>> = Vec::new();
@@ -127,7 +152,7 @@ impl<F: Float> Renderer<F> {
                 tally.proceed()?;
                 let start = tile * TILE;
                 let end = size.pixels().min(start + TILE);
-                worker.tile(view, size, start..end, &mut results);
+                worker.tile(view, part, start..end, &mut results);
                 tally.add(end - start);
                 Ok(())
             },
@@ -160,12 +185,12 @@ impl<'a, F: Float> Worker<'a, F> {
     }
 
     /// Evaluates the pixels of a tile that are not background.
-    fn tile(&mut self, view: &View, size: Size, pixels: Range<usize>, results: &mut [&mut [F]]) {
+    fn tile(&mut self, view: &View, part: Part, pixels: Range<usize>, results: &mut [&mut [F]]) {
         self.footprints.clear();
         self.positions.clear();
         self.lanes.clear();
         for (lane, index) in pixels.enumerate() {
-            if let Some((footprint, position)) = view.pixel(size, index) {
+            if let Some((footprint, position)) = view.pixel(part.whole, part.place(index)) {
                 self.footprints.push(footprint);
                 self.positions.push(position);
                 self.lanes.push(lane);
@@ -253,6 +278,24 @@ mod tests {
                     "pixel {index}: {got} {expected:?}"
                 );
                 assert_eq!(scaled.channels()[axis][index], -2.0 * got);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_are_what_the_whole_holds() {
+        let (size, view) = (Size::new(150, 97), View::Sphere(Sphere::default()));
+        let renderer = Renderer::<f32>::new(&position());
+        let whole = renderer.render(&view, size, None, Job::default()).unwrap();
+        for (column, row) in [(0, 0), (1, 2), (2, 1)] {
+            let part = Part::tile(size, [column, row], [3, 4]).expect("it has pixels");
+            let image = renderer.strip(&view, part);
+            let shared = renderer.render_part(&view, part, Job::default()).unwrap();
+            assert_eq!(image, shared);
+            for (channel, whole) in image.channels().iter().zip(whole.channels()) {
+                for (index, x) in channel.iter().enumerate() {
+                    assert_eq!(x.to_bits(), whole[part.place(index)].to_bits());
+                }
             }
         }
     }

@@ -1,19 +1,26 @@
-//! Image files: PNG with 8 or 16 bits in sRGB, EXR with f32 in linear light.
+//! Image files: PNG with 8 or 16 bits, EXR with f32 in linear light.
 //!
 //! A file is written whole or not at all: its bytes go to a temporary file in the same folder,
-//! which then takes the name in one step.
+//! which then takes the name in one step. Large PNG files are written as their rows are made
+//! ([`stream`]).
+
+mod levels;
+mod png;
 
 use std::fmt;
 use std::fs;
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use exr::prelude as openexr;
 use exr::prelude::WritableImage;
+use rayon::prelude::*;
 
 use crate::image::Image;
-use crate::srgb::srgb_from_linear;
+use crate::ordered::in_order;
+use crate::size::Size;
+use levels::Levels;
+use png::{Layout, Stream, Strip};
 
 /// The bits of a channel of a PNG file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,11 +32,39 @@ pub enum Bits {
     Sixteen,
 }
 
+/// What the levels of a PNG file stand for; the file says so.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Space {
+    /// sRGB: what people look at.
+    #[default]
+    Srgb,
+    /// The numbers as they are: what programs read.
+    Linear,
+}
+
+impl Space {
+    /// The space of what has these channels: colours are looked at, all else is read.
+    pub fn of(names: &[String]) -> Self {
+        match names.first().map(String::as_str) {
+            Some("R") => Self::Srgb,
+            _ => Self::Linear,
+        }
+    }
+
+    /// The name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Srgb => "srgb",
+            Self::Linear => "linear",
+        }
+    }
+}
+
 /// The format of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// PNG: sRGB, clamped to 0 to 1, rounded to nearest, not dithered.
-    Png(Bits),
+    /// PNG: clamped to 0 to 1, rounded to nearest, not dithered.
+    Png(Bits, Space),
     /// EXR: the numbers as they are, with the channel names of the image.
     Exr,
 }
@@ -41,8 +76,6 @@ pub enum FileError {
     Extension(PathBuf),
     /// The file or its folder cannot be written.
     Write(PathBuf, io::Error),
-    /// The PNG encoder refuses the image, for instance because it is too large for the format.
-    Png(PathBuf, ::image::ImageError),
     /// The EXR encoder refuses the image.
     Exr(PathBuf, exr::error::Error),
 }
@@ -54,7 +87,6 @@ impl fmt::Display for FileError {
                 write!(f, "{}: the name must end in .png or .exr", path.display())
             }
             Self::Write(path, error) => write!(f, "{}: cannot be written: {error}", path.display()),
-            Self::Png(path, error) => write!(f, "{}: not a possible PNG: {error}", path.display()),
             Self::Exr(path, error) => write!(f, "{}: not a possible EXR: {error}", path.display()),
         }
     }
@@ -63,14 +95,15 @@ impl fmt::Display for FileError {
 impl std::error::Error for FileError {}
 
 impl Format {
-    /// The format that a file name asks for by its extension, in any case; `bits` is for PNG.
+    /// The format that a file name asks for by its extension, in any case; `bits` and `space` are for
+    /// PNG.
     ///
     /// # Errors
     /// If the extension is neither `png` nor `exr`.
-    pub fn of(path: &Path, bits: Bits) -> Result<Self, FileError> {
+    pub fn of(path: &Path, bits: Bits, space: Space) -> Result<Self, FileError> {
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         match extension.to_str() {
-            Some("png") => Ok(Self::Png(bits)),
+            Some("png") => Ok(Self::Png(bits, space)),
             Some("exr") => Ok(Self::Exr),
             _ => Err(FileError::Extension(path.to_path_buf())),
         }
@@ -96,7 +129,7 @@ pub fn write(path: &Path, image: &Image, format: Format) -> Result<(), FileError
 /// If the encoder refuses the image.
 pub fn encode(path: &Path, image: &Image, format: Format) -> Result<Vec<u8>, FileError> {
     match format {
-        Format::Png(bits) => png(image, bits).map_err(|e| FileError::Png(path.into(), e)),
+        Format::Png(bits, space) => Ok(png(image, bits, space)),
         Format::Exr => exr_bytes(image).map_err(|e| FileError::Exr(path.into(), e)),
     }
 }
@@ -140,6 +173,15 @@ enum Staged {
 
 impl Staged {
     fn new(path: &Path, bytes: &[u8]) -> io::Result<Self> {
+        let mut staged = Self::open(path)?;
+        if let Self::Beside(file, _) = &mut staged {
+            file.write_all(bytes)?;
+        }
+        Ok(staged)
+    }
+
+    /// Nothing is written yet.
+    fn open(path: &Path) -> io::Result<Self> {
         let resolved = fs::canonicalize(path);
         let path = resolved.as_deref().unwrap_or(path);
         if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
@@ -157,9 +199,16 @@ impl Staged {
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
-        let mut file = builder.tempfile_in(folder)?;
-        file.write_all(bytes)?;
+        let file = builder.tempfile_in(folder)?;
         Ok(Self::Beside(file, path.to_path_buf()))
+    }
+
+    /// What takes bytes as they come.
+    fn file(&mut self) -> &mut fs::File {
+        match self {
+            Self::Beside(file, _) => file.as_file_mut(),
+            Self::Direct(file) => file,
+        }
     }
 
     fn finish(self, bytes: &[u8]) -> io::Result<()> {
@@ -173,55 +222,93 @@ impl Staged {
     }
 }
 
-fn png(image: &Image, bits: Bits) -> ::image::ImageResult<Vec<u8>> {
-    let names = image.names();
-    let alpha = names.len() == 4 && names[3] == "A";
-    let zeros;
-    let mut channels: Vec<&[f32]> = image.channels().iter().map(Vec::as_slice).collect();
-    channels.truncate(if alpha { 4 } else { 3 });
-    if channels.len() == 2 {
-        zeros = vec![0.0; image.size().pixels()];
-        channels.push(&zeros);
+fn png(image: &Image, bits: Bits, space: Space) -> Vec<u8> {
+    let layout = Layout::of(image.size(), image.names(), bits, space);
+    let levels = Levels::new();
+    let strips: Vec<Strip> = (0..layout.strips())
+        .into_par_iter()
+        .map(|strip| layout.strip(&levels, image, layout.rows_of(strip).0, strip))
+        .collect();
+    let (mut file, mut stream) = (Vec::new(), Stream::new());
+    layout
+        .begin(&mut file)
+        .and_then(|()| {
+            strips
+                .iter()
+                .try_for_each(|strip| stream.push(&mut file, strip))
+        })
+        .and_then(|()| stream.end(&mut file))
+        .expect("memory takes all bytes");
+    file
+}
+
+/// A PNG file of several that are written together as their rows are made.
+#[derive(Clone, Debug)]
+pub struct Streamed {
+    /// Where it goes.
+    pub path: PathBuf,
+    /// The names of its channels.
+    pub names: Vec<String>,
+    /// The bits of a channel.
+    pub bits: Bits,
+    /// What its levels stand for.
+    pub space: Space,
+}
+
+/// Writes PNG files of one size on all cores, with a few strips of rows in memory: `render` makes some
+/// rows, from the first one and so many, of all files. The bytes are those of [`encode`].
+///
+/// # Errors
+/// What `render` says, and if a file cannot be written; then existing files are as they were.
+pub fn stream<E: Send + From<FileError>>(
+    files: &[Streamed],
+    size: Size,
+    render: impl Fn(u32, u32) -> Result<Vec<Image>, E> + Sync,
+) -> Result<(), E> {
+    let layouts: Vec<Layout> = (files.iter())
+        .map(|file| Layout::of(size, &file.names, file.bits, file.space))
+        .collect();
+    let Some(first) = layouts.first() else {
+        return Ok(());
+    };
+    let failed = |file: &Streamed| {
+        let path = file.path.clone();
+        move |error| FileError::Write(path, error)
+    };
+    let mut staged = Vec::with_capacity(files.len());
+    for (file, layout) in files.iter().zip(&layouts) {
+        let mut open = Staged::open(&file.path).map_err(failed(file))?;
+        layout.begin(open.file()).map_err(failed(file))?;
+        staged.push((open, Stream::new(), file));
     }
-    let number = |channel: usize, pixel: usize| {
-        let x = channels[channel][pixel];
-        // A NaN stays one, and converts to the integer 0.
-        if channel == 3 {
-            x.clamp(0.0, 1.0)
-        } else {
-            srgb_from_linear(x)
-        }
+    let levels = Levels::new();
+    let make = |strip: usize| {
+        let (row, rows) = first.rows_of(strip as u32);
+        let strip =
+            |(layout, image): (&Layout, &Image)| layout.strip(&levels, image, 0, strip as u32);
+        let strips =
+            render(row, rows).map(|images| layouts.iter().zip(&images).map(strip).collect());
+        strips as Result<Vec<Strip>, E>
     };
-    let pixels = image.size().pixels();
-    let all = (0..pixels).flat_map(|p| (0..channels.len()).map(move |c| (c, p)));
-    let (bytes, [grey, rgb, rgba]) = match bits {
-        Bits::Eight => (
-            all.map(|(c, p)| (number(c, p) * 255.0).round() as u8)
-                .collect::<Vec<_>>(),
-            [
-                ExtendedColorType::L8,
-                ExtendedColorType::Rgb8,
-                ExtendedColorType::Rgba8,
-            ],
-        ),
-        Bits::Sixteen => (
-            all.flat_map(|(c, p)| ((number(c, p) * 65535.0).round() as u16).to_ne_bytes())
-                .collect(),
-            [
-                ExtendedColorType::L16,
-                ExtendedColorType::Rgb16,
-                ExtendedColorType::Rgba16,
-            ],
-        ),
-    };
-    let color = match channels.len() {
-        1 => grey,
-        3 => rgb,
-        _ => rgba,
-    };
-    let mut file = Vec::new();
-    PngEncoder::new(&mut file).write_image(&bytes, image.width(), image.height(), color)?;
-    Ok(file)
+    let count = first.strips() as usize;
+    in_order(
+        count,
+        rayon::current_num_threads(),
+        make,
+        |_, strips: Vec<Strip>| {
+            for ((open, stream, file), strip) in staged.iter_mut().zip(&strips) {
+                stream.push(open.file(), strip).map_err(failed(file))?;
+            }
+            Ok(())
+        },
+    )?;
+    for (open, stream, file) in &mut staged {
+        stream.end(open.file()).map_err(failed(file))?;
+    }
+    for (open, _, file) in staged {
+        open.finish(&[]).map_err(failed(file))?;
+    }
+    Ok(())
 }
 
 fn exr_bytes(image: &Image) -> Result<Vec<u8>, exr::error::Error> {
@@ -252,7 +339,7 @@ fn exr_bytes(image: &Image) -> Result<Vec<u8>, exr::error::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::srgb::linear_from_srgb;
+    use crate::srgb::{linear_from_srgb, srgb_from_linear};
     use crate::view::Size;
 
     fn gradient(names: &[&str]) -> Image {
@@ -279,7 +366,8 @@ mod tests {
                     .path()
                     .join(format!("{}-{bits:?}.PNG", names.join("")));
                 let image = gradient(names);
-                write(&path, &image, Format::of(&path, bits).unwrap()).unwrap();
+                let format = Format::of(&path, bits, Space::Srgb).unwrap();
+                write(&path, &image, format).unwrap();
                 let bytes = fs::read(&path).unwrap();
                 let read = ::image::load_from_memory(&bytes).unwrap();
                 let expected = if names == ["X", "Y"] { 3 } else { names.len() };
@@ -304,13 +392,78 @@ mod tests {
     }
 
     #[test]
+    fn what_is_streamed_is_what_is_written_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        // Several strips, the last of which is not full.
+        let size = Size::new(1 << 12, 70);
+        let number = |c: usize, p: usize| ((p * (7 + c)) % 9973) as f32 / 9973.0;
+        let rows = |names: &[&str], row: u32, rows: u32| {
+            let pixels = row as usize * size.width as usize..;
+            let pixels = pixels.take(rows as usize * size.width as usize);
+            let channel = |c| pixels.clone().map(|p| number(c, p)).collect();
+            let channels = (0..names.len()).map(channel).collect();
+            Image::new(Size::new(size.width, rows), names, channels)
+        };
+        let (color, height) = (["R", "G", "B"], ["Y"]);
+        let file = |name: &str, names: &[&str], bits, space| Streamed {
+            path: folder.path().join(name),
+            names: names.iter().map(|name| (*name).to_owned()).collect(),
+            bits,
+            space,
+        };
+        let files = [
+            file("color.png", &color, Bits::Eight, Space::Srgb),
+            file("height.png", &height, Bits::Sixteen, Space::Linear),
+        ];
+        let both = |row, count| Ok(vec![rows(&color, row, count), rows(&height, row, count)]);
+        stream::<FileError>(&files, size, both).unwrap();
+        for (file, names) in files.iter().zip([&color[..], &height]) {
+            let image = rows(names, 0, size.height);
+            let bytes = fs::read(&file.path).unwrap();
+            let format = Format::Png(file.bits, file.space);
+            assert!(bytes == encode(&file.path, &image, format).unwrap());
+            let read = ::image::load_from_memory(&bytes).unwrap().into_rgba32f();
+            for (index, pixel) in read.pixels().enumerate() {
+                let x = image.channels()[0][index];
+                let wanted = match file.space {
+                    Space::Srgb => srgb_from_linear(x),
+                    Space::Linear => x,
+                };
+                assert!((pixel.0[0] - wanted).abs() < 0.51 / 255.0);
+            }
+        }
+        let fails = |row, _| Err(FileError::Extension(format!("{row}").into()));
+        stream(&files, size, fails).unwrap_err();
+        let left = fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(left, 2, "no temporary file stays");
+    }
+
+    #[test]
+    fn a_png_says_what_its_levels_are() {
+        let image = gradient(&["Y"]);
+        let bytes = |space| {
+            let file = encode(Path::new("a.png"), &image, Format::Png(Bits::Eight, space));
+            file.unwrap()
+        };
+        let says = |bytes: &[u8], word: &[u8]| bytes.windows(word.len()).any(|w| w == word);
+        let (srgb, linear) = (bytes(Space::Srgb), bytes(Space::Linear));
+        assert!(says(&srgb, b"sRGB\0") && !says(&linear, b"sRGB"));
+        assert!(says(
+            &linear,
+            &[b"gAMA".as_slice(), &100_000u32.to_be_bytes()].concat()
+        ));
+        assert_eq!(Space::of(&["R".into()]), Space::Srgb);
+        assert_eq!(Space::of(&["Y".into()]), Space::Linear);
+    }
+
+    #[test]
     fn exr_holds_every_bit_under_its_channel_name() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("moments.exr");
         let mut mean = gradient(&["R", "G", "B"]);
         mean.channels_mut()[0][5] = -7.25e20;
         let image = Image::moments(&mean, &gradient(&["R", "G", "B"]));
-        write(&path, &image, Format::of(&path, Bits::Eight).unwrap()).unwrap();
+        write(&path, &image, Format::Exr).unwrap();
         let read = openexr::read_first_flat_layer_from_file(&path).unwrap();
         let found = &read.layer_data.channel_data.list;
         assert_eq!(found.len(), 6);
@@ -333,15 +486,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let image = gradient(&["Y"]);
         let missing = folder.path().join("no").join("such.png");
-        let result = write(&missing, &image, Format::Png(Bits::Eight));
+        let result = write(&missing, &image, Format::Png(Bits::Eight, Space::Srgb));
         assert!(matches!(result, Err(FileError::Write(_, _))), "{result:?}");
 
         let taken = folder.path().join("taken.png");
         fs::create_dir(&taken).unwrap();
-        let result = write(&taken, &image, Format::Png(Bits::Eight));
+        let result = write(&taken, &image, Format::Png(Bits::Eight, Space::Srgb));
         assert!(matches!(result, Err(FileError::Write(_, _))), "{result:?}");
 
-        let unknown = Format::of(Path::new("a.jpeg"), Bits::Eight);
+        let unknown = Format::of(Path::new("a.jpeg"), Bits::Eight, Space::Srgb);
         assert!(
             matches!(unknown, Err(FileError::Extension(_))),
             "{unknown:?}"

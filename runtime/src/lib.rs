@@ -31,6 +31,8 @@ pub mod image_file;
 pub mod job;
 pub mod lit;
 pub mod metrics;
+#[cfg(feature = "files")]
+mod ordered;
 pub mod plan;
 mod size;
 pub mod srgb;

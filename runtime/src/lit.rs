@@ -8,7 +8,7 @@ mod sky;
 mod truth;
 
 use crate::image::{Image, outputs};
-use crate::view::{Hit, View};
+use crate::view::{Hit, Part, View};
 use mipless_codegen::cpu::{Evaluator, Input, Scratch};
 use mipless_codegen::ir::Interface;
 pub use mipless_codegen::shade::Hiding;
@@ -84,7 +84,12 @@ impl Lit {
     /// of a program whose outputs are parts of a material by their names. What is not among them is as of a
     /// surface that is smooth.
     pub fn light(&self, interface: &Interface, all: &Image) -> Image {
-        let size = all.size();
+        self.light_part(interface, all, Part::all(all.size()))
+    }
+
+    /// The same of a part of a picture.
+    pub fn light_part(&self, interface: &Interface, all: &Image, part: Part) -> Image {
+        let size = part.size;
         let layout = Layout::of(interface);
         let tiles: Vec<[Vec<f32>; 3]> = (0..size.pixels().div_ceil(TILE))
             .into_par_iter()
@@ -92,7 +97,8 @@ impl Lit {
                 let pixels = tile * TILE..size.pixels().min((tile + 1) * TILE);
                 let (mut lanes, mut hits) = (Vec::new(), Vec::new());
                 for index in pixels.clone() {
-                    let hit = self.view.hit(size, size.centre(index));
+                    let point = part.whole.centre(part.place(index));
+                    let hit = self.view.hit(part.whole, point);
                     if let Some(hit) = hit.filter(|hit| hit.footprint().is_some()) {
                         lanes.push(index);
                         hits.push(hit);

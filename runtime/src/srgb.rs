@@ -21,6 +21,16 @@ pub fn linear_from_srgb(srgb: f32) -> f32 {
     }
 }
 
+/// The same with more digits.
+#[cfg(feature = "files")]
+pub(crate) fn linear_in_f64(srgb: f64) -> f64 {
+    if srgb <= 0.040_45 {
+        srgb / 12.92
+    } else {
+        ((srgb + 0.055) / 1.055).powf(2.4)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -19,7 +19,7 @@ pub use sphere::Sphere;
 use mipless_codegen::cpu::{Footprint, Position};
 
 use crate::image::Image;
-pub use crate::size::Size;
+pub use crate::size::{Part, Size};
 
 /// What a ray through one point of the picture meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,18 +180,28 @@ impl View {
 
     /// The picture of a surface that is lit already, `image`, a colour, with the background behind it.
     pub fn present_lit(&self, image: &Image) -> Image {
-        self.presented(image, |_| 1.0)
+        self.present_lit_part(image, Part::all(image.size()))
+    }
+
+    /// The same of a part of a picture.
+    pub fn present_lit_part(&self, image: &Image, part: Part) -> Image {
+        self.presented(image, part, |_| 1.0)
     }
 
     /// The picture that people see: `image`, a colour (`R,G,B[,A]`) or a float (`Y`) evaluated over
     /// this view, with the light of the view on it and the background behind it. Other images, such
     /// as vectors, come back as they are.
     pub fn present(&self, image: &Image) -> Image {
-        self.presented(image, |hit| hit.shade)
+        self.present_part(image, Part::all(image.size()))
     }
 
-    fn presented(&self, image: &Image, light: impl Fn(&Hit) -> f64) -> Image {
-        let size = image.size();
+    /// The same of a part of a picture.
+    pub fn present_part(&self, image: &Image, part: Part) -> Image {
+        self.presented(image, part, |hit| hit.shade)
+    }
+
+    fn presented(&self, image: &Image, part: Part, light: impl Fn(&Hit) -> f64) -> Image {
+        let size = part.whole;
         let mut picture = image.clone();
         let lit = match image.names().iter().map(String::as_str).collect::<Vec<_>>()[..] {
             ["R", "G", "B"] | ["R", "G", "B", "A"] => 3,
@@ -201,8 +211,8 @@ impl View {
         if matches!(self, Self::Flat(_)) {
             return picture;
         }
-        for index in 0..size.pixels() {
-            let point = size.centre(index);
+        for index in 0..part.size.pixels() {
+            let point = size.centre(part.place(index));
             let hit = self
                 .hit(size, point)
                 .filter(|hit| hit.footprint().is_some());

@@ -2,7 +2,7 @@
 //! them fresh.
 
 use mipless_runtime::image::Image;
-use mipless_runtime::image_file::{self, Bits, Format};
+use mipless_runtime::image_file::{self, Bits, Format, Space};
 use mipless_tests::book::{PAGES, index, page, summary, thumbnails};
 use mipless_tests::generated::{FRESH, compare, names};
 use mipless_tests::{asked, root, thumbnail};
@@ -36,7 +36,7 @@ fn the_table_of_contents_lists_every_node() {
 
 /// The bytes of a picture in the form in which `render` writes it.
 fn encoded(path: &Path, image: &Image) -> Vec<u8> {
-    image_file::encode(path, image, Format::Png(Bits::Eight)).expect("a picture")
+    image_file::encode(path, image, Format::Png(Bits::Eight, Space::Srgb)).expect("a picture")
 }
 
 /// The pixels of a picture's bytes, a byte a channel.

@@ -269,6 +269,13 @@ fn the_schema_is_fresh() {
 }
 
 #[test]
+fn the_schema_of_manifests_is_fresh() {
+    let schema = mipless::manifest::manifest_schema();
+    let text = serde_json::to_string_pretty(&schema).expect("JSON") + "\n";
+    compare("mipless/manifest.schema.json", &text).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
 fn the_schema_accepts_every_graph_and_refuses_mistakes() {
     let validator = jsonschema::validator_for(&schema()).expect("the schema is one");
     for case in all() {

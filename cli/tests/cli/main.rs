@@ -2,6 +2,8 @@
 
 mod audit;
 mod bad_graphs;
+mod bakes;
+mod builds;
 mod documents;
 mod folder;
 mod images;
@@ -140,7 +142,7 @@ fn wrong_usage_is_told_and_writes_nothing() {
         ("render one.json -o no/such/a.png", "no/such/a.png"),
         ("render one.json -o taken.png", "folder"),
         ("render one.json -o a.png --size 0x5", "--size"),
-        ("render one.json -o a.png --size 99999x5", "16384"),
+        ("render one.json -o a.png --size 9999999x5", "1048576"),
         (
             "render one.json -o a.png --set scal=3",
             "did you mean `scale`",

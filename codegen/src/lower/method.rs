@@ -112,3 +112,13 @@ impl PixelFilter {
         }
     }
 }
+
+/// As the command line and the manifest write it.
+impl fmt::Display for PixelFilter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Gaussian(sd) => write!(f, "gaussian:{sd}"),
+            Self::Box => f.write_str("box"),
+        }
+    }
+}

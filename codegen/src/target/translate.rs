@@ -1,10 +1,10 @@
 //! Translation of a shader into another shading language.
 
-use super::{ValidateError, Validated, validate};
-use crate::wgsl::{BindingKind, Shader, Stage};
-use naga::back::{glsl, hlsl, msl, spv};
-use naga::proc::BoundsCheckPolicies;
-use naga::{ResourceBinding, ShaderStage};
+use super::included::included;
+use super::{ValidateError, Validated, glsl, validate};
+use crate::wgsl::{BindingKind, Shader, Stage, TableForm};
+use naga::ResourceBinding;
+use naga::back::{hlsl, msl, spv};
 use std::fmt;
 
 /// A shading language.
@@ -16,6 +16,8 @@ pub enum Target {
     Spirv,
     /// GLSL 4.50.
     Glsl,
+    /// GLSL ES 3.00 (WebGL 2).
+    GlslEs,
     /// HLSL, shader model 5.1.
     Hlsl,
     /// Metal Shading Language 2.0.
@@ -24,7 +26,14 @@ pub enum Target {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 5] = [Self::Wgsl, Self::Spirv, Self::Glsl, Self::Hlsl, Self::Msl];
+    pub const ALL: [Self; 6] = [
+        Self::Wgsl,
+        Self::Spirv,
+        Self::Glsl,
+        Self::GlslEs,
+        Self::Hlsl,
+        Self::Msl,
+    ];
 
     /// The name on the command line.
     pub const fn name(self) -> &'static str {
@@ -32,6 +41,7 @@ impl Target {
             Self::Wgsl => "wgsl",
             Self::Spirv => "spirv",
             Self::Glsl => "glsl",
+            Self::GlslEs => "glsl-es",
             Self::Hlsl => "hlsl",
             Self::Msl => "msl",
         }
@@ -48,7 +58,10 @@ impl Target {
             (Self::Wgsl, _) => "wgsl",
             (Self::Spirv, _) => "spv",
             (Self::Glsl, Some(Stage::Compute)) => "comp",
-            (Self::Glsl, _) => "frag",
+            (Self::Glsl, Some(Stage::Fragment)) => "frag",
+            (Self::Glsl, None) => "glsl",
+            (Self::GlslEs, Some(_)) => "es.frag",
+            (Self::GlslEs, None) => "es.glsl",
             (Self::Hlsl, _) => "hlsl",
             (Self::Msl, _) => "metal",
         }
@@ -56,7 +69,32 @@ impl Target {
 
     /// Whether the language cannot hold a function without an entry point.
     pub const fn needs_entry(self) -> bool {
-        matches!(self, Self::Spirv | Self::Glsl)
+        matches!(self, Self::Spirv)
+    }
+
+    /// Where its shaders read tables from, if they are asked to read them from `tables`.
+    pub const fn tables(self, tables: TableForm) -> TableForm {
+        match (self, tables) {
+            (Self::GlslEs, TableForm::Storage) => TableForm::Texture,
+            _ => tables,
+        }
+    }
+
+    /// Why there is no translation of a shader, if the language cannot hold it.
+    pub fn refuses(self, shader: &Shader) -> Option<TranslateError> {
+        let stage = shader.entry_point.as_ref().map(|entry| entry.stage);
+        let reads_buffer = shader.tables.is_some() && shader.table_form == TableForm::Storage;
+        match (self, stage) {
+            (_, None) if self.needs_entry() => Some(TranslateError::NeedsEntry(self)),
+            (Self::GlslEs, Some(Stage::Compute)) => {
+                Some(TranslateError::Lacks(self, "compute shaders"))
+            }
+            (Self::GlslEs, _) if reads_buffer => Some(TranslateError::Lacks(
+                self,
+                "storage buffers, where the tables are",
+            )),
+            _ => None,
+        }
     }
 }
 
@@ -68,6 +106,8 @@ pub type Translated = Vec<u8>;
 pub enum TranslateError {
     /// The target has no functions without an entry point, and the shader has no entry point.
     NeedsEntry(Target),
+    /// The language has not what the shader needs.
+    Lacks(Target, &'static str),
     /// The shader is not valid WGSL: a bug of the emitter.
     Invalid(ValidateError),
     /// naga's back end rejects the shader, in its words.
@@ -82,6 +122,7 @@ impl fmt::Display for TranslateError {
                 "{} cannot hold a function without an entry point",
                 target.name()
             ),
+            Self::Lacks(target, what) => write!(f, "{} has no {what}", target.name()),
             Self::Invalid(error) => error.fmt(f),
             Self::BackEnd(target, error) => write!(f, "{}: {error}", target.name()),
         }
@@ -99,7 +140,7 @@ impl From<ValidateError> for TranslateError {
 /// Validates a shader and translates it: see [`Validated::translate`].
 ///
 /// # Errors
-/// If the target needs an entry point that the shader has not, or naga rejects the shader.
+/// If the target refuses the shader ([`Target::refuses`]), or naga rejects it.
 pub fn translate(shader: &Shader, target: Target) -> Result<Translated, TranslateError> {
     validate(&shader.source)?.translate(shader, target)
 }
@@ -107,24 +148,22 @@ pub fn translate(shader: &Shader, target: Target) -> Result<Translated, Translat
 impl Validated {
     /// Translates the shader that this is naga's form of; for several targets it is read once.
     /// Bindings keep their numbers: GLSL's `binding`, HLSL's registers (space 0), Metal's buffer
-    /// indices. Metal's compute shaders read the byte lengths of their arrays from buffer 8, or from
-    /// the one behind the last binding if that is higher, in the order of the bindings.
+    /// indices. Metal's shaders read the byte lengths of their arrays from buffer 8, or from the one
+    /// behind the last binding if that is higher, in the order in which the text declares them.
+    ///
+    /// Of a shader without an entry point GLSL, HLSL and Metal get a text to include: it has no
+    /// `#version`, and what two textures share (`Footprint`, naga's helpers) is guarded, so that several
+    /// stand in one file.
     ///
     /// # Errors
-    /// If the target needs an entry point that the shader has not, or naga's back end rejects it.
+    /// If the target refuses the shader ([`Target::refuses`]), or naga's back end rejects it.
     pub fn translate(&self, shader: &Shader, target: Target) -> Result<Translated, TranslateError> {
-        if target.needs_entry() && shader.entry_point.is_none() {
-            return Err(TranslateError::NeedsEntry(target));
+        if let Some(refused) = target.refuses(shader) {
+            return Err(refused);
         }
+        let is_included = shader.entry_point.is_none();
         let (module, info) = (&self.module, &self.info);
         let failed = |error: &dyn fmt::Display| TranslateError::BackEnd(target, error.to_string());
-        let entry = shader.entry_point.as_ref().map(|entry| {
-            let stage = match entry.stage {
-                Stage::Fragment => ShaderStage::Fragment,
-                Stage::Compute => ShaderStage::Compute,
-            };
-            (stage, entry.name.clone())
-        });
         let resources = || {
             (shader.bindings.iter()).map(|b| {
                 (
@@ -147,25 +186,8 @@ impl Validated {
                 let words = spv::write_vec(module, info, &options, None).map_err(|e| failed(&e))?;
                 Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
             }
-            Target::Glsl => {
-                let options = glsl::Options {
-                    version: glsl::Version::Desktop(450),
-                    writer_flags: glsl::WriterFlags::empty(),
-                    binding_map: resources().map(|(at, b)| (at, b.binding as u8)).collect(),
-                    ..glsl::Options::default()
-                };
-                let (shader_stage, entry_point) =
-                    entry.ok_or(TranslateError::NeedsEntry(target))?;
-                let pipeline = glsl::PipelineOptions {
-                    shader_stage,
-                    entry_point,
-                    multiview: None,
-                };
-                let policies = BoundsCheckPolicies::default();
-                let mut text = String::new();
-                glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies)
-                    .and_then(|mut writer| writer.write())
-                    .map_err(|e| failed(&e))?;
+            Target::Glsl | Target::GlslEs => {
+                let text = glsl::write(self, shader, target)?;
                 Ok(text.into_bytes())
             }
             Target::Hlsl => {
@@ -175,12 +197,19 @@ impl Validated {
                 hlsl::Writer::new(&mut text, &options, &pipeline)
                     .write(module, info, None)
                     .map_err(|e| failed(&e))?;
+                if is_included {
+                    text = included(&text);
+                }
                 Ok(text.into_bytes())
             }
             Target::Msl => {
                 let resources = resources().map(|(at, binding)| {
+                    let is_texture = binding.kind == BindingKind::Tables
+                        && shader.table_form != TableForm::Storage;
+                    let slot = Some(binding.binding as u8);
                     let target = msl::BindTarget {
-                        buffer: Some(binding.binding as u8),
+                        buffer: slot.filter(|_| !is_texture),
+                        texture: slot.filter(|_| is_texture),
                         mutable: binding.kind == BindingKind::Outputs,
                         ..msl::BindTarget::default()
                     };
@@ -193,16 +222,18 @@ impl Validated {
                 };
                 let options = msl::Options {
                     lang_version: (2, 0),
-                    per_entry_point_map: entry
-                        .into_iter()
-                        .map(|(_, name)| (name, slots.clone()))
+                    per_entry_point_map: (shader.entry_point.iter())
+                        .map(|entry| (entry.name.clone(), slots.clone()))
                         .collect(),
                     fake_missing_bindings: false,
                     ..msl::Options::default()
                 };
                 let pipeline = msl::PipelineOptions::default();
-                let (text, _) =
+                let (mut text, _) =
                     msl::write_string(module, info, &options, &pipeline).map_err(|e| failed(&e))?;
+                if is_included {
+                    text = included(&text);
+                }
                 Ok(text.into_bytes())
             }
         }

@@ -31,6 +31,15 @@ impl std::error::Error for ValidateError {}
 pub fn validate(source: &str) -> Result<Validated, ValidateError> {
     let module = naga::front::wgsl::parse_str(source)
         .map_err(|error| ValidateError(error.emit_to_string(source)))?;
+    checked(module, source)
+}
+
+/// Validates a module that was read before and has changed since.
+pub(super) fn revalidate(module: naga::Module) -> Result<Validated, ValidateError> {
+    checked(module, "")
+}
+
+fn checked(module: naga::Module, source: &str) -> Result<Validated, ValidateError> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
     let info = validator
         .validate(&module)

@@ -2,10 +2,10 @@
 
 use super::function::EntryText;
 use super::name::{Scope, identifier};
+use super::table::{ARGUMENT, ARGUMENT_TYPE, push_variable};
 use super::{
     Binding, BindingKind, Entry, EntryPoint, FOOTPRINTS_BINDING, OUTPUTS_BINDING, Options,
-    OutputField, PARAMETERS_BINDING, PIXELS_PER_ROW, ParameterField, Stage, TABLES_BINDING,
-    WORKGROUP_SIZE,
+    OutputField, PARAMETERS_BINDING, PIXELS_PER_ROW, ParameterField, Stage, WORKGROUP_SIZE,
 };
 use crate::ir::{Program, Type};
 use std::fmt::Write;
@@ -192,14 +192,8 @@ struct Position {
 /// not declare them ([`Options::shared_footprint`]).
 pub static DECLARATIONS: LazyLock<String> = LazyLock::new(|| format!("{FOOTPRINT}{POSITION}"));
 
-/// Appends `Footprint`, the structs of parameters and outputs, and the array of tables.
-pub(super) fn push_structs(
-    out: &mut String,
-    names: &Names,
-    face: &Face,
-    tables: bool,
-    options: &Options,
-) {
+/// Appends `Footprint` and the structs of parameters and outputs.
+pub(super) fn push_structs(out: &mut String, names: &Names, face: &Face, options: &Options) {
     if !options.shared_footprint {
         out.push_str(FOOTPRINT);
         if face.position {
@@ -225,21 +219,20 @@ pub(super) fn push_structs(
         .iter()
         .map(|o| (o.field.as_str(), type_text(o.scalar, o.ty.components())));
     push(&names.outputs, &mut fields);
-    if tables {
-        writeln!(
-            out,
-            "@group({}) @binding({}) var<storage, read> {}: array<f32>;\n",
-            options.group,
-            options.binding + TABLES_BINDING,
-            names.tables
-        )
-        .expect("a string takes all text");
-    }
 }
 
 /// How the texture's function spells its parameters and result.
-pub(super) fn entry_text(program: &Program, names: &Names, face: &Face) -> EntryText {
-    let mut signature = "footprint: Footprint".to_owned();
+pub(super) fn entry_text(
+    program: &Program,
+    names: &Names,
+    face: &Face,
+    takes_tables: bool,
+) -> EntryText {
+    let mut signature = String::new();
+    if takes_tables {
+        write!(signature, "{ARGUMENT}: {ARGUMENT_TYPE}, ").expect("a string takes all text");
+    }
+    signature.push_str("footprint: Footprint");
     let mut parameters: Vec<String> = FOOTPRINT_PATHS.map(str::to_owned).into();
     if face.position {
         signature.push_str(", position: Position");
@@ -307,6 +300,7 @@ pub(super) fn push_entry_point(
     options: &Options,
     names: &Names,
     face: &Face,
+    takes_tables: bool,
 ) -> (Option<EntryPoint>, Vec<Binding>) {
     let (entry, group) = (options.entry, options.group);
     let mut bindings = Vec::new();
@@ -331,6 +325,9 @@ pub(super) fn push_entry_point(
         Entry::Fragment => Stage::Fragment,
         Entry::Compute => Stage::Compute,
     };
+    if takes_tables {
+        push_variable(out, options, &names.tables);
+    }
     if entry == Entry::Compute && face.position {
         out.push_str("struct Pixel {\n    footprint: Footprint,\n    position: Position,\n}\n\n");
     }
@@ -375,15 +372,20 @@ pub(super) fn push_entry_point(
         out.push('\n');
     }
     let argument = parameters.map_or(String::new(), |name| format!(", {name}"));
+    let callee = if takes_tables {
+        format!("{}({}, ", names.function, names.tables)
+    } else {
+        format!("{}(", names.function)
+    };
     let name = match (footprints, pixels) {
         (Some(footprints), Some(pixels)) => {
             let name = scope.take(format!("{}_compute", names.function));
-            push_compute(out, &name, names, face, [&footprints, &pixels, &argument]);
+            push_compute(out, &name, &callee, face, [&footprints, &pixels, &argument]);
             name
         }
         _ => {
             let name = scope.take(format!("{}_fragment", names.function));
-            push_fragment(out, scope, &name, names, face, &argument);
+            push_fragment(out, scope, &name, names, face, [&callee, &argument]);
             name
         }
     };
@@ -393,7 +395,7 @@ pub(super) fn push_entry_point(
 fn push_compute(
     out: &mut String,
     name: &str,
-    names: &Names,
+    callee: &str,
     face: &Face,
     [footprints, pixels, argument]: [&str; 3],
 ) {
@@ -409,9 +411,8 @@ fn push_compute(
          fn {name}(@builtin(global_invocation_id) id: vec3u) {{\n    \
              let index = id.x + id.y * {PIXELS_PER_ROW}u;\n    \
              if index >= arrayLength(&{footprints}) {{\n        return;\n    }}\n    \
-             let outputs = {}({pixel}{argument});\n    \
-             let first = index * {scalars}u;\n",
-        names.function
+             let outputs = {callee}{pixel}{argument});\n    \
+             let first = index * {scalars}u;\n"
     )
     .expect("a string takes all text");
     for output in &face.outputs {
@@ -436,7 +437,7 @@ fn push_fragment(
     name: &str,
     names: &Names,
     face: &Face,
-    argument: &str,
+    [callee, argument]: [&str; 2],
 ) {
     let means: Vec<&OutputField> = face.outputs.iter().filter(|o| !o.variance).collect();
     let colors: Vec<String> = (means.iter())
@@ -483,8 +484,7 @@ fn push_fragment(
         out,
         "@fragment\nfn {name}(@location(0) uv: vec2f{input}) -> {result} {{\n    \
              let footprint = Footprint(vec2i(0i, 0i), uv, dpdx(uv), dpdy(uv));\n{position}    \
-             let outputs = {}(footprint{place}{argument});\n    return {value};\n}}\n",
-        names.function
+             let outputs = {callee}footprint{place}{argument});\n    return {value};\n}}\n"
     )
     .expect("a string takes all text");
 }

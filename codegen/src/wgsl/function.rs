@@ -7,6 +7,7 @@ use super::expression::level;
 use super::name::{Scope, camel, capitals, internal, push_letters};
 use super::part::{Item, Part, split};
 use super::statement::{self, Statements, choose, is_single};
+use super::table::{ARGUMENT, ARGUMENT_TYPE, Reading};
 use crate::ir::{Function, FunctionId, Inst, Module, Type, Value};
 
 /// The most parameters of a function; beyond that they are packed into a struct.
@@ -74,8 +75,8 @@ pub(super) struct Context<'a> {
     pub(super) signatures: &'a [Option<Signature>],
     /// Every name at module scope.
     pub(super) globals: Scope,
-    /// The name of the array of tables.
-    pub(super) tables: &'a str,
+    /// How the tables are read.
+    pub(super) tables: &'a Reading<'a>,
     /// Where each table starts in it.
     pub(super) table_offsets: &'a [u32],
     /// The text so far.
@@ -112,6 +113,8 @@ const GENERATED: u32 = 1 << 31;
 struct Writer<'c, 'a> {
     context: &'c mut Context<'a>,
     function: &'a Function,
+    /// Whether it takes the tables as its first argument, and so do its parts.
+    takes_tables: bool,
     statements: Statements,
     entry: Option<&'c EntryText>,
     /// Where each value is found at the moment.
@@ -157,9 +160,14 @@ pub(super) fn write(
     {
         scope.take(taken.to_owned());
     }
+    let takes_tables = context.tables.is_argument_of(id);
+    if takes_tables {
+        scope.take(ARGUMENT.to_owned());
+    }
     let mut writer = Writer {
         context,
         function,
+        takes_tables,
         statements: choose(module, function),
         entry,
         places: vec![OWN; size],
@@ -243,6 +251,7 @@ impl<'a> Writer<'_, 'a> {
         if let Some(entry) = self.entry {
             self.push(&entry.signature);
         } else {
+            self.push_tables_parameter(function.params.is_empty());
             if let Some(packed) = &packed {
                 self.push("args: ");
                 self.push(packed);
@@ -317,6 +326,7 @@ impl<'a> Writer<'_, 'a> {
         self.push("fn ");
         self.push(&name);
         self.push("(");
+        self.push_tables_parameter(part.inputs.is_empty());
         if let Some(packed) = &packed {
             self.push("args: ");
             self.push(packed);
@@ -362,6 +372,22 @@ impl<'a> Writer<'_, 'a> {
         });
     }
 
+    /// The declaration of the tables among the parameters, if they are one.
+    fn push_tables_parameter(&mut self, is_only: bool) {
+        if self.takes_tables {
+            self.push(ARGUMENT);
+            self.push(": ");
+            self.push(ARGUMENT_TYPE);
+            self.push(if is_only { "" } else { ", " });
+        }
+    }
+
+    /// The tables among the arguments of a call.
+    fn push_tables_argument(&mut self, is_only: bool) {
+        self.push(ARGUMENT);
+        self.push(if is_only { "" } else { ", " });
+    }
+
     /// A name at module scope.
     fn take(&mut self, name: String) -> String {
         let name = self.context.globals.take(name);
@@ -389,6 +415,9 @@ impl<'a> Writer<'_, 'a> {
         self.push(" = ");
         self.push(&name);
         self.push("(");
+        if self.takes_tables {
+            self.push_tables_argument(part.inputs.is_empty());
+        }
         if let Some(packed) = &packed {
             self.push(packed);
             self.push("(");

@@ -100,7 +100,7 @@ fn is_identifier(text: &str) -> bool {
 }
 
 /// The name of a type: the words of an identifier, capitalised and joined.
-pub(super) fn camel(identifier: &str) -> String {
+pub(crate) fn camel(identifier: &str) -> String {
     let mut name = String::with_capacity(identifier.len());
     for word in identifier.split('_') {
         let mut rest = word.chars();
@@ -112,7 +112,8 @@ pub(super) fn camel(identifier: &str) -> String {
 
 /// What the texture's function and the entry points call their arguments and values: a function of
 /// that name could not be called where it stands for something else.
-const LOCALS: &str = "footprint position parameters outputs index first id uv xyz pixels";
+const LOCALS: &str =
+    "footprint position parameters outputs index first id uv xyz pixels tables du dv dx dy";
 
 /// Address spaces, access modes and built-in values, which a declaration of the module hides.
 const ENUMERANTS: &str = "

@@ -6,6 +6,7 @@
 use super::entry::{Face, Names};
 use super::function::{Context, EntryText, Signature, write};
 use super::name::callable;
+use super::table::Reading;
 use crate::ir::FunctionId;
 use crate::shade::{FIELDS, Hiding, Lighting, absent};
 use std::fmt::Write as _;
@@ -88,7 +89,7 @@ fn push_one(
         module: &module,
         signatures: &signatures,
         globals: std::mem::take(&mut context.globals),
-        tables: context.tables,
+        tables: &Reading::none(),
         table_offsets: &[],
         out: std::mem::take(&mut context.out),
     };

@@ -4,6 +4,7 @@
 use super::function::{self, Context, Signature};
 use super::gap::{Gap, Spelled};
 use super::name::{Scope, capitals, push_letters};
+use super::table::Reading;
 use crate::ir::{FunctionId, Module};
 
 /// The first of the letters that stand for names while a text is written; those for types follow
@@ -32,7 +33,7 @@ fn spell(module: &Module, id: FunctionId, callees: &[FunctionId]) -> Spelled {
         module,
         signatures: &signatures,
         globals: Scope::default(),
-        tables: "",
+        tables: &Reading::none(),
         table_offsets: &[],
         out: String::new(),
     };
@@ -60,6 +61,10 @@ fn spell(module: &Module, id: FunctionId, callees: &[FunctionId]) -> Spelled {
 
 /// Appends function `id` if its text is kept and fits the names of the module; whether it did.
 pub(super) fn push(context: &mut Context<'_>, id: FunctionId) -> bool {
+    // What is kept is the text of functions that read no tables.
+    if context.tables.is_argument_of(id) {
+        return false;
+    }
     let module = context.module;
     let function = module.function(id);
     let callees = function.callees();

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::{Gpu, GpuError, Pipeline};
 use crate::image::Image;
 use crate::job::{Job, Tally};
-use crate::view::{Size, View};
+use crate::view::{Part, Size, View};
 
 /// How long a render took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,6 +80,21 @@ impl Gpu {
         size: Size,
         job: Job<'_>,
     ) -> Result<(Image, Timing), GpuError> {
+        self.render_part(pipeline, view, Part::all(size), job)
+    }
+
+    /// The same of a part of a picture.
+    ///
+    /// # Errors
+    /// As [`Gpu::render`].
+    pub fn render_part(
+        &self,
+        pipeline: &Pipeline,
+        view: &View,
+        part: Part,
+        job: Job<'_>,
+    ) -> Result<(Image, Timing), GpuError> {
+        let size = part.size;
         let mut image = pipeline.blank(size);
         let mut timing = Timing::default();
         let tally = Tally::new(job, size);
@@ -92,7 +107,7 @@ impl Gpu {
             let end = size.pixels().min(start + chunk);
             let (pixels, footprints): (Vec<usize>, Vec<(Footprint, Position)>) = (start..end)
                 .into_par_iter()
-                .filter_map(|index| Some((index, view.pixel(size, index)?)))
+                .filter_map(|index| Some((index, view.pixel(part.whole, part.place(index))?)))
                 .unzip();
             if !footprints.is_empty() {
                 let begun = Instant::now();

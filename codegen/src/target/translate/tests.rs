@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::ir::random;
-use crate::target::Manifest;
 use crate::wgsl::{Entry, emit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -52,21 +51,6 @@ fn every_target_takes_every_entry_point() {
             }
         }
     }
-}
-
-#[test]
-fn the_manifest_names_what_a_host_binds() {
-    let shader = &shaders(Entry::Compute)[0];
-    let json = Manifest::new(shader, |_| (None, None)).to_json();
-    let manifest: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!(manifest["function"], "texture_value");
-    assert_eq!(manifest["entry_point"]["stage"], "compute");
-    let kinds: Vec<_> = (manifest["bindings"].as_array().unwrap().iter())
-        .map(|b| (b["kind"].as_str().unwrap(), b["binding"].as_u64().unwrap()))
-        .collect();
-    assert_eq!(kinds, [("footprints", 0), ("outputs", 2), ("tables", 3)]);
-    assert_eq!(manifest["tables"][0]["length"], 3);
-    assert_eq!(manifest["outputs"][0]["type"], "color3");
 }
 
 /// Feeds `input` to a program and asserts that it accepts it.

@@ -187,11 +187,12 @@ impl Writer<'_, '_> {
     fn load(&mut self, table: u32, index: Value) {
         let offset = self.context.table_offsets[table as usize];
         let last = self.context.module.tables[table as usize].data.len() as u32 - 1;
-        self.context.out.push_str(self.context.tables);
-        self.push("[");
+        let (before, behind) = self.context.tables.around();
+        self.push(&before);
         if let Some(index) = self.function.constant(index) {
             push_number(&mut self.context.out, offset + index.bits.min(last));
-            self.push("u]");
+            self.push("u");
+            self.push(behind);
             return;
         }
         if offset > 0 {
@@ -202,7 +203,8 @@ impl Writer<'_, '_> {
         self.operand(index, level::ARGUMENT);
         self.push(", ");
         push_number(&mut self.context.out, last);
-        self.push("u)]");
+        self.push("u)");
+        self.push(behind);
     }
 
     /// A call, or a fold of one turn.
@@ -239,6 +241,12 @@ impl Writer<'_, '_> {
         let signature = signature.expect("a callee is reached");
         self.context.out.push_str(&signature.name);
         self.context.out.push('(');
+        if self.context.tables.is_argument_of(callee) {
+            let is_only = self.context.module.function(callee).params.is_empty();
+            self.push_tables_argument(is_only);
+        }
+        let signature = self.context.signatures[callee.index()].as_ref();
+        let signature = signature.expect("a callee is reached");
         if let Some(packed) = &signature.packed {
             self.context.out.push_str(packed);
             self.context.out.push('(');
