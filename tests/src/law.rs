@@ -201,6 +201,9 @@ fn shaders(program: &Program, report: &mut Report<'_>) {
             Err(error) => return report(Law::Shader, error.to_string()),
         };
         for target in Target::ALL {
+            if target.refuses(&shader).is_some() {
+                continue;
+            }
             if let Err(error) = validated.translate(&shader, target) {
                 return report(Law::Shader, format!("{}: {error}", target.name()));
             }

@@ -66,7 +66,7 @@ fn faults(graph: &Value) -> Vec<String> {
             }
         };
         for target in Target::ALL {
-            if entry == Entry::None && target.needs_entry() {
+            if target.refuses(&shader).is_some() {
                 continue;
             }
             match validated.translate(&shader, target) {

@@ -105,7 +105,7 @@ fn targets(case: &Case, method: Method) -> Result<(), Failed> {
             assert_eq!(refused, Err(TranslateError::NeedsEntry(Target::Spirv)));
         }
         for target in Target::ALL {
-            if entry == Entry::None && target.needs_entry() {
+            if target.refuses(&shader).is_some() {
                 continue;
             }
             let translated = validated.translate(&shader, target)?;

@@ -23,7 +23,7 @@ pub(super) fn godot(library: &Library<'_>) -> FormFile {
         &[
             format!("#include \"{}.gdshaderinc\"", library.file),
             format!(
-                "In fragment(): {} texture = {uses}; ALBEDO = texture.{};",
+                "In fragment(): {} {function}_here = {uses}; ALBEDO = {function}_here.{};",
                 shader.outputs_struct, output.field
             ),
             "Colours are linear, as ALBEDO is.".to_owned(),

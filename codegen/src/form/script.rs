@@ -224,6 +224,8 @@ pub(super) fn material(library: &Library<'_>) -> FormFile {
     }
     let (mut values, mut uniforms) = (Vec::new(), Vec::new());
     if shader.tables.is_some() {
+        writeln!(declared, "uniform highp sampler2D {};", shader.tables_name)
+            .expect("a string takes all text");
         uniforms.push(format!(
             "      {}: {{ value: tables }},\n",
             shader.tables_name
@@ -260,7 +262,7 @@ pub(super) fn material(library: &Library<'_>) -> FormFile {
         library.outputs[0].0.field,
         quoted(&library.text),
         shader.outputs_struct,
-        library.call("", &values)
+        library.call(&shader.tables_name, &values)
     )
     .expect("a string takes all text");
     let tables = if shader.tables.is_some() {
