@@ -35,8 +35,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     scene: scene::Arguments,
 
-    /// The picture: .png or .exr (f32, linear). `{graph}`, `{output}` and `{tile}` stand for their names,
-    /// so that several have names of their own
+    /// The picture: .png or .exr (f32, linear). `{graph}`, `{output}`, `{tile}` and `{level}` stand for
+    /// their names, so that several have names of their own
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
 
@@ -64,6 +64,11 @@ pub(crate) struct Arguments {
     /// A tile of the picture of --size, to the bit as it is in the whole: its column and row, of so many
     #[arg(long, value_name = "I,J/NxM", value_parser = value::tile)]
     tile: Option<[[u32; 2]; 2]>,
+
+    /// Also render each level of the mip chain down to 1×1, filtered for its own pixels: `{level}` in the
+    /// name is its number
+    #[arg(long, conflicts_with = "tile")]
+    mips: bool,
 
     /// Also write the mean and the variance of every channel over the footprint, as f32
     #[arg(long, value_name = "FILE.exr")]
@@ -136,6 +141,11 @@ impl Arguments {
         self.graphs.iter().for_each(|graph| read.add(graph));
         for path in std::iter::once(&self.out).chain(&self.moments) {
             names::needs_graph(path, self.graphs.len())?;
+            if self.mips && !path.to_string_lossy().contains("{level}") {
+                let message = format!("all levels would be {}", path.display());
+                return Err(Mistake::usage("same-name", message)
+                    .help("put `{level}` into the name: {graph}_{level}.png"));
+            }
             if !names::is_pattern(path) {
                 writable(path)?;
                 read.guard(path)?;
@@ -188,7 +198,7 @@ impl Arguments {
         report: &mut Report,
     ) -> Result<Map<String, Value>, Mistake> {
         let (mut scene, plan) = self.prepare(path, report)?;
-        let part = match self.tile {
+        let whole = match self.tile {
             None => Part::all(scene.size),
             Some([place, count]) => Part::tile(scene.size, place, count).ok_or_else(|| {
                 Mistake::usage("usage", "`--tile`: a picture of that size has no such tile")
@@ -203,47 +213,56 @@ impl Arguments {
         let mut read = Sources::default();
         self.graphs.iter().for_each(|graph| read.add(graph));
         read.add_graph(path, &scene.texture);
-        let mut named = |pattern: &PathBuf| {
-            let all = scene.outputs().into_iter();
-            let one = |output: String| {
-                let name = Name {
-                    graph: scene.texture.name(),
-                    output: &output,
-                    tile: self.tile,
-                };
-                names.take(pattern, &name, &read)
-            };
-            all.map(one).collect::<Result<Vec<PathBuf>, Mistake>>()
-        };
-        let work = Work {
-            path,
-            options,
-            format,
-            part,
-            out: named(&self.out)?,
-            moments: self
-                .moments
-                .as_ref()
-                .map(&mut named)
-                .transpose()?
-                .unwrap_or_default(),
-        };
         let begun = Instant::now();
-        let is_large = part.size.pixels() > STREAMED;
-        match format {
-            Format::Png(bits, _) if is_large && work.moments.is_empty() => {
-                self.stream(&work, bits, &scene, report)?;
+        let mut files = Vec::new();
+        let levels = if self.mips {
+            whole.size.levels()
+        } else {
+            vec![whole.size]
+        };
+        for (level, size) in (0..).zip(levels) {
+            let part = if level == 0 { whole } else { Part::all(size) };
+            scene.size = part.whole;
+            let mut named = |pattern: &PathBuf| {
+                let one = |output: String| {
+                    let name = Name {
+                        graph: scene.texture.name(),
+                        output: &output,
+                        tile: self.tile,
+                        level,
+                    };
+                    names.take(pattern, &name, &read)
+                };
+                let all = scene.outputs().into_iter();
+                all.map(one).collect::<Result<Vec<PathBuf>, Mistake>>()
+            };
+            let work = Work {
+                path,
+                options,
+                format,
+                part,
+                out: named(&self.out)?,
+                moments: (self.moments.as_ref().map(&mut named))
+                    .transpose()?
+                    .unwrap_or_default(),
+            };
+            let is_large = part.size.pixels() > STREAMED;
+            match format {
+                Format::Png(bits, _) if is_large && work.moments.is_empty() => {
+                    self.stream(&work, bits, &scene, report)?;
+                }
+                _ => self.whole(&work, &mut scene, report)?,
             }
-            _ => self.whole(&work, &mut scene, report)?,
+            let written = work.out.iter().chain(&work.moments);
+            files.extend(written.map(|file| file.display().to_string()));
         }
-        let files = work.out.iter().chain(&work.moments);
-        let files: Vec<String> = files.map(|file| file.display().to_string()).collect();
+        let shown = (whole.size, begun.elapsed());
         Ok(say(
             &scene,
-            &work,
+            (path, &options),
             &files,
             plan.as_ref(),
-            begun.elapsed(),
+            shown,
             report,
         ))
     }
@@ -367,14 +386,12 @@ impl Arguments {
 /// Says what was done, to people at once; returns it for tools.
 fn say(
     scene: &Scene,
-    work: &Work<'_>,
+    (path, options): (&Path, &Options),
     files: &[String],
     plan: Option<&Plan>,
-    taken: Duration,
+    (Size { width, height }, taken): (Size, Duration),
     report: &Report,
 ) -> Map<String, Value> {
-    let Size { width, height } = work.part.size;
-    let options = &work.options;
     let chosen = plan.map(|plan| format!(" ({plan})")).unwrap_or_default();
     report.note(format_args!(
         "{}: {width}×{height}, {} view, method {}{chosen}, {}, {:.1} s",
@@ -385,7 +402,7 @@ fn say(
         taken.as_secs_f64()
     ));
     let results = json!({
-        "graph": work.path.display().to_string(),
+        "graph": path.display().to_string(),
         "files": files,
         "size": [width, height],
         "output": scene.output_name(),

@@ -27,6 +27,16 @@ impl Size {
         self.width as usize * self.height as usize
     }
 
+    /// The sizes of a mip chain: this one, and half of the one before, rounded down, to a single pixel.
+    pub fn levels(self) -> Vec<Self> {
+        let half = |size: &Self| {
+            let is_last = size.width == 1 && size.height == 1;
+            let [width, height] = [size.width, size.height].map(|side| (side / 2).max(1));
+            (!is_last).then(|| Self::new(width, height))
+        };
+        std::iter::successors(Some(self), half).collect()
+    }
+
     /// The centre of the pixel at `index`, counted along the rows from the top left.
     pub(crate) fn centre(self, index: usize) -> [f64; 2] {
         let width = self.width as usize;
@@ -102,6 +112,13 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn chains_end_at_a_pixel() {
+        let sizes = Size::new(10, 3).levels();
+        let sides: Vec<[u32; 2]> = sizes.iter().map(|size| [size.width, size.height]).collect();
+        assert_eq!(sides, [[10, 3], [5, 1], [2, 1], [1, 1]]);
+    }
 
     #[test]
     fn tiles_cover_every_pixel_once() {

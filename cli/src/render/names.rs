@@ -1,4 +1,4 @@
-//! The names of pictures, by patterns: `{graph}`, `{output}` and `{tile}` stand for names.
+//! The names of pictures, by patterns: `{graph}`, `{output}`, `{tile}` and `{level}` stand for names.
 
 use crate::load::folder_of;
 use crate::mistake::Mistake;
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What stands for what.
-const WORDS: [&str; 3] = ["{graph}", "{output}", "{tile}"];
+const WORDS: [&str; 4] = ["{graph}", "{output}", "{tile}", "{level}"];
 
 /// What a picture shows.
 pub(super) struct Name<'a> {
@@ -19,6 +19,8 @@ pub(super) struct Name<'a> {
     pub(super) output: &'a str,
     /// The tile, if it is one.
     pub(super) tile: Option<[[u32; 2]; 2]>,
+    /// The level of its mip chain; 0 is the largest.
+    pub(super) level: u32,
 }
 
 /// The files that have a picture already, by their places without links.
@@ -56,7 +58,12 @@ impl Names {
         // A name of a graph is any text, and no path.
         let plain = |text: &str| text.replace(['/', '\\', ':', '\0'], "_");
         let mut text = pattern.to_string_lossy().into_owned();
-        let words = [plain(name.graph), plain(name.output), tile];
+        let words = [
+            plain(name.graph),
+            plain(name.output),
+            tile,
+            name.level.to_string(),
+        ];
         for (word, of) in WORDS.iter().zip(&words) {
             text = text.replace(word, of);
         }

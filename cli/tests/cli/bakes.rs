@@ -92,3 +92,20 @@ fn a_tile_is_to_the_bit_what_the_whole_holds() {
     let hidden = |entry: &fs::DirEntry| entry.file_name().to_string_lossy().starts_with('.');
     assert_eq!(left.flatten().filter(hidden).count(), 0);
 }
+
+#[test]
+fn each_level_of_a_mip_chain_is_filtered_for_its_own_pixels() {
+    let folder = Folder::new();
+    let base = "render marble.json --output height --view flat --window 0,0,3,3 --device cpu";
+    folder
+        .run(&format!("{base} --size 16x8 --mips -o mip_{{level}}.png"))
+        .is(0)
+        .says("mip_4.png");
+    folder.run(&format!("{base} --size 4x2 -o small.png")).is(0);
+    assert_eq!(folder.read("small.png"), folder.read("mip_2.png"));
+    let last = image::load_from_memory(&folder.read("mip_4.png")).expect("a PNG");
+    assert_eq!(last.dimensions(), (1, 1));
+    assert!(!folder.path("mip_5.png").exists());
+    let line = format!("{base} --size 16x8 --mips -o mip.png");
+    folder.run(&line).is(2).says("{level}");
+}
