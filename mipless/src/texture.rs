@@ -1,14 +1,14 @@
 //! A checked graph with its catalogue.
 
 use crate::files::{Files, Folder, NoFiles, name_of_file};
-use crate::{Audit, Options, Program, TextureEvaluator, resource};
+use crate::{Audit, Catalogue, NodeDef, Options, Program, TextureEvaluator, resource};
 use std::fmt;
 use std::io;
 use std::path::Path;
 
 use mipless_graph::{
     CheckOptions, Checked, Diagnostic, Document, Graph, NodeSpec, Output, Parameter, Signal, check,
-    load,
+    load_with,
 };
 
 /// The specs of the catalogue.
@@ -47,6 +47,7 @@ impl std::error::Error for FromFileError {}
 /// A texture graph without mistakes.
 #[derive(Clone, Debug)]
 pub struct Texture {
+    catalogue: Catalogue,
     checked: Checked,
     document: Document,
     warnings: Vec<Diagnostic>,
@@ -114,7 +115,20 @@ impl Texture {
         options: &CheckOptions,
         files: &dyn Files,
     ) -> Result<Self, Vec<Diagnostic>> {
-        let loaded = load(text, &specs());
+        Self::of_catalogue(&Catalogue::shipped(), name, text, options, files)
+    }
+
+    /// The same with the nodes and the library of a catalogue.
+    pub(crate) fn of_catalogue(
+        catalogue: &Catalogue,
+        name: &str,
+        text: &str,
+        options: &CheckOptions,
+        files: &dyn Files,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let loaded = load_with(text, catalogue.specs(), |document| {
+            catalogue.complete(document)
+        });
         let (images, found) = resource::read(&loaded.files, files);
         let mut diagnostics = loaded.diagnostics;
         diagnostics.extend(found);
@@ -130,8 +144,9 @@ impl Texture {
         match check(graph, options) {
             Ok(checked) if !unusable => {
                 diagnostics.extend(checked.warnings().iter().cloned());
-                diagnostics.extend(jumps(&checked));
+                diagnostics.extend(jumps(&checked, catalogue.definitions()));
                 Ok(Self {
+                    catalogue: catalogue.clone(),
                     checked,
                     document,
                     warnings: diagnostics,
@@ -162,6 +177,7 @@ impl Texture {
         let graph = graph.with_parts(graph.materials.first()?, parts);
         let checked = check(graph, options);
         Some(checked.map(|checked| Self {
+            catalogue: self.catalogue.clone(),
             checked,
             document: self.document.clone(),
             warnings: Vec::new(),
@@ -223,13 +239,13 @@ impl Texture {
 
     /// Compiles the graph for both back ends.
     pub fn compile(&self, options: &Options) -> Program {
-        mipless_codegen::compile(&self.checked, crate::catalogue(), options)
+        mipless_codegen::compile(&self.checked, self.catalogue.definitions(), options)
     }
 
     /// What `auto` does where closed forms are wrong, and how far it is off: measured on the CPU at a
     /// few places, once for each graph, by [`Texture::compile`] too.
     pub fn audit(&self, options: &Options) -> Audit {
-        mipless_codegen::audit(&self.checked, crate::catalogue(), options)
+        mipless_codegen::audit(&self.checked, self.catalogue.definitions(), options)
     }
 
     /// Compiles the graph for evaluation on the CPU, with its inputs at their defaults.
@@ -239,8 +255,8 @@ impl Texture {
 }
 
 /// Warnings of heights that jump.
-fn jumps(checked: &Checked) -> Vec<Diagnostic> {
-    let nodes = mipless_codegen::jumps(checked, crate::catalogue());
+pub(crate) fn jumps(checked: &Checked, catalogue: &[NodeDef]) -> Vec<Diagnostic> {
+    let nodes = mipless_codegen::jumps(checked, catalogue);
     let warn = |id| {
         let node = checked.graph().node(id);
         let message = format!("the height of a material jumps at `{}`", node.name);
