@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
 
     /// A folder whose graphs (.json) every session may use as sub-graphs
     #[arg(long, value_name = "DIR")]
-    library: Option<PathBuf>,
+    graphs: Option<PathBuf>,
 
     /// The most bytes of a message
     #[arg(long, value_name = "BYTES", default_value_t = 4 << 20)]
@@ -116,8 +116,8 @@ pub(crate) fn run(arguments: &Arguments, report: &mut Report) -> Result<(), Mist
         seconds: arguments.max_seconds.min(1e6),
     };
     let mut catalogue = Catalogue::shipped();
-    if let Some(folder) = &arguments.library {
-        let failed = |error| Mistake::usage("library", error);
+    if let Some(folder) = &arguments.graphs {
+        let failed = |error| Mistake::usage("usage", error);
         catalogue = catalogue.with_library(folder).map_err(failed)?;
     }
     // Graphs come from whoever speaks: they name no files unless a folder is given for it.

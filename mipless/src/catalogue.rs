@@ -1,9 +1,8 @@
 //! The nodes that a tool offers: those of this crate, its own, and sub-graphs of a library.
 
-use crate::Texture;
-use crate::files::{Files, name_of_file};
+use crate::files::name_of_file;
 use mipless_codegen::NodeDef;
-use mipless_graph::{Body, CheckOptions, Diagnostic, Document, Map, NodeEntry, NodeSpec, draft};
+use mipless_graph::{Body, Diagnostic, Document, Map, NodeEntry, NodeSpec, draft};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fmt;
@@ -233,20 +232,6 @@ impl Catalogue {
     /// What tells catalogues apart, as long as both are there.
     pub(crate) fn identity(&self) -> usize {
         Arc::as_ptr(&self.0) as usize
-    }
-
-    /// The graph of a text, whose nodes these are; a graph without a name is called `name`.
-    ///
-    /// # Errors
-    /// Every mistake, located, and the warnings with them.
-    pub fn texture(
-        &self,
-        name: &str,
-        text: &str,
-        options: &CheckOptions,
-        files: &dyn Files,
-    ) -> Result<Texture, Vec<Diagnostic>> {
-        Texture::of_catalogue(self, name, text, options, files)
     }
 
     /// The definitions of the nodes.

@@ -55,6 +55,7 @@ mod history;
 mod patch;
 mod picture;
 mod preview;
+mod rewire;
 mod saved;
 mod sound;
 mod types;

@@ -254,6 +254,22 @@ impl Texture {
     }
 }
 
+impl Catalogue {
+    /// The graph of a text, whose nodes these are; a graph without a name is called `name`.
+    ///
+    /// # Errors
+    /// Every mistake, located, and the warnings with them.
+    pub fn texture(
+        &self,
+        name: &str,
+        text: &str,
+        options: &CheckOptions,
+        files: &dyn Files,
+    ) -> Result<Texture, Vec<Diagnostic>> {
+        Texture::of_catalogue(self, name, text, options, files)
+    }
+}
+
 /// Warnings of heights that jump.
 pub(crate) fn jumps(checked: &Checked, catalogue: &[NodeDef]) -> Vec<Diagnostic> {
     let nodes = mipless_codegen::jumps(checked, catalogue);

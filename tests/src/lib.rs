@@ -93,3 +93,8 @@ pub fn cases(usual: u32) -> u32 {
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/book/src/tool.md")]
 pub mod tool {}
+
+/// The page of the book for people who write an editor.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/book/src/sessions.md")]
+pub mod sessions {}

@@ -128,12 +128,23 @@ impl<W: Write + Send + 'static> Crew<W> {
 
     /// Stops what goes to a receiver; whether there was something.
     pub(super) fn cancel(&self, receiver: impl Fn(&Receiver) -> bool) -> bool {
-        let queue = self.lock();
+        let mut queue = self.lock();
         let mut found = false;
         for ticket in queue.tickets.iter().filter(|t| receiver(&t.receiver)) {
             ticket.cancel.store(true, Ordering::Relaxed);
             found = true;
         }
+        // Nobody waits for a preview that has not begun: it makes room for the next one.
+        let Queue {
+            waiting, tickets, ..
+        } = &mut *queue;
+        waiting.retain(|(task, ticket)| {
+            let is_gone = matches!(task.receiver, Receiver::Watch(..)) && receiver(&task.receiver);
+            if is_gone {
+                tickets.retain(|known| !Arc::ptr_eq(known, ticket));
+            }
+            !is_gone
+        });
         found
     }
 

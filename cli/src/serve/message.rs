@@ -43,7 +43,7 @@ pub(super) fn read(from: &mut impl BufRead, most: u64) -> io::Result<(Incoming, 
         if text.is_empty() {
             continue;
         }
-        if text.first().is_some_and(u8::is_ascii_alphabetic) && text.contains(&b':') {
+        if is_head(text) {
             return framed(from, text, most).map(|read| (read, Framing::Length));
         }
         return Ok((Incoming::Message(text.to_vec()), Framing::Line));
@@ -71,18 +71,20 @@ fn framed(from: &mut impl BufRead, first: &[u8], most: u64) -> io::Result<Incomi
     let mut length = length_of(first);
     let mut head = from.by_ref().take(HEAD);
     loop {
-        let mut line = Vec::new();
-        if head.read_until(b'\n', &mut line)? == 0 {
+        // A line that begins as a message does is none of a head, whatever came before.
+        if matches!(head.fill_buf()?.first(), None | Some(b'{' | b'[')) {
             return Ok(Incoming::NoLength);
         }
-        if line.trim_ascii().is_empty() {
+        let mut line = Vec::new();
+        head.read_until(b'\n', &mut line)?;
+        let text = line.trim_ascii();
+        if text.is_empty() {
             break;
         }
-        length = length.or_else(|| length_of(&line));
-        // A line that is no part of a head was meant as a message: it is lost with the head.
-        if !line.contains(&b':') {
+        if !is_head(text) {
             return Ok(Incoming::NoLength);
         }
+        length = length.or_else(|| length_of(text));
     }
     let Some(length) = length else {
         return Ok(Incoming::NoLength);
@@ -95,6 +97,14 @@ fn framed(from: &mut impl BufRead, first: &[u8], most: u64) -> io::Result<Incomi
     let mut bytes = Vec::new();
     body.read_to_end(&mut bytes)?;
     Ok(Incoming::Message(bytes))
+}
+
+/// Whether a line is `Name: value`.
+fn is_head(line: &[u8]) -> bool {
+    let colon = line.iter().position(|&byte| byte == b':');
+    let name = colon.map(|colon| &line[..colon]).unwrap_or_default();
+    let is_letter = |byte: &u8| byte.is_ascii_alphabetic() || *byte == b'-';
+    !name.is_empty() && name.iter().all(is_letter)
 }
 
 fn length_of(line: &[u8]) -> Option<u64> {
@@ -156,6 +166,8 @@ mod tests {
                 "4 Line"
             ]
         );
+        let text = b"A: b\n{\"c\":1}\nA: b";
+        assert_eq!(all(text, 10), ["NoLength", "{\"c\":1} Line", "NoLength"]);
         let text = b"Content-Length: 12\n\n0123456789ab[5]\nContent-Length: x\n\n[6]";
         assert_eq!(
             all(text, 10),

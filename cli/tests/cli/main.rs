@@ -8,6 +8,7 @@ mod images;
 mod light;
 mod names;
 mod overwrite;
+mod serve;
 
 use folder::{Folder, GRAPH, Run};
 use serde_json::Value;

@@ -103,7 +103,7 @@ impl Context<'_> {
         let mut outputs = Vec::new();
         let sound = checked.map(|checked| {
             let graph = checked.graph();
-            let digests = of_nodes(graph, pictures);
+            let digests = of_nodes(graph, &|name| pictures.digest(name));
             outputs.extend(graph.outputs.iter().map(|output| Sound {
                 name: output.name.clone(),
                 ty: output.ty,
@@ -136,10 +136,9 @@ impl Context<'_> {
             return Err(draft.diagnostics);
         };
         if inner && !preview::choose(&mut graph, path, port) {
-            let message = format!("`{path}` cannot be shown");
-            draft
-                .diagnostics
-                .push(Diagnostic::error("no-preview", message));
+            let message = format!("there is no node `{path}` that could be shown");
+            let first = Diagnostic::error("unknown-node", message);
+            draft.diagnostics.insert(0, first);
             return Err(draft.diagnostics);
         }
         keep_sound(&mut graph, &draft.diagnostics);
@@ -147,7 +146,7 @@ impl Context<'_> {
             return Err(draft.diagnostics);
         }
         let checked = check(graph, &self.check_options())?;
-        let digests = of_nodes(checked.graph(), pictures);
+        let digests = of_nodes(checked.graph(), &|name| pictures.digest(name));
         let program = of_program(checked.graph(), &digests, self.options);
         Ok((checked, program))
     }

@@ -1,7 +1,6 @@
 //! What a graph says, in 128 bits: equal graphs have equal digests, whenever and wherever they are made in
 //! one process.
 
-use crate::session::picture::Pictures;
 use mipless_graph::{Graph, Input, Literal, Node, Source, Type};
 use std::hash::{DefaultHasher, Hasher};
 
@@ -51,8 +50,11 @@ impl Words {
     }
 }
 
+/// What a name of a file stands for, by its digest.
+pub(super) type Pictures<'p> = &'p dyn Fn(&str) -> Option<Digest>;
+
 /// The digests of the nodes of a graph: of all that each is a function of.
-pub(super) fn of_nodes(graph: &Graph, pictures: &Pictures) -> Vec<Digest> {
+pub(super) fn of_nodes(graph: &Graph, pictures: Pictures<'_>) -> Vec<Digest> {
     let mut words = Words::default();
     let mut digests: Vec<Digest> = Vec::with_capacity(graph.nodes.len());
     for node in &graph.nodes {
@@ -76,7 +78,7 @@ fn start(words: &mut Words, node: &Node) {
 fn of_input(
     words: &mut Words,
     graph: &Graph,
-    pictures: &Pictures,
+    pictures: Pictures<'_>,
     input: &Input,
     digests: &[Digest],
 ) {
@@ -103,7 +105,7 @@ fn of_input(
             words.number(3);
             of_literal(words, literal);
             if let (Literal::Text(name), Type::Filename) = (literal, input.ty)
-                && let Some(digest) = pictures.digest(name)
+                && let Some(digest) = pictures(name)
             {
                 words.digest(digest);
             }

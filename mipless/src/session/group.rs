@@ -1,7 +1,7 @@
 //! Nodes become a sub-graph, and a sub-graph its nodes.
 
-use super::apply::{Refused, Types, chosen, free, rebind, redirect, refuse, scopes};
 use super::patch::Recorder;
+use super::rewire::{Refused, Types, chosen, free, rebind, redirect, refuse, scopes};
 use mipless_graph::{Binding, Body, Diagnostic, InputEntry, Map, NodeEntry, Reference, Type};
 use serde_json::Value;
 

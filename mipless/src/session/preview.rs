@@ -1,6 +1,6 @@
 //! A node alone: what a preview shows of a document.
 
-use super::apply::{Refused, missing, refuse};
+use super::rewire::{Refused, missing, refuse};
 use mipless_graph::{Binding, Document, Graph, Map, NodeEntry, Output, Reference};
 
 /// What the output of a preview is called.
