@@ -23,7 +23,8 @@ use std::sync::{Arc, LazyLock};
 /// fn lower<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
 ///     let signals = lower.bundle(node, "in");
 ///     let square = |signal: &Signal<'b>| {
-///         let centred = signal.offset(-0.5);
+///         // It is read twice: what it has for itself becomes what both readers share.
+///         let centred = lower.algebra.expose(&signal.offset(-0.5));
 ///         lower.algebra.product(&centred, &centred)
 ///     };
 ///     signals.iter().map(square).collect()

@@ -160,7 +160,10 @@ static WRONG: NodeSpec = spec("acme_wrong");
 
 fn right<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let signals = lower.bundle(node, "in");
-    let square = |signal: &Signal<'b>| lower.algebra.product(signal, signal);
+    let square = |signal: &Signal<'b>| {
+        let signal = lower.algebra.expose(signal);
+        lower.algebra.product(&signal, &signal)
+    };
     signals.iter().map(square).collect()
 }
 
@@ -168,9 +171,17 @@ fn right<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
 fn wrong<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
     let signals = lower.bundle(node, "in");
     let square = |signal: &Signal<'b>| {
+        let signal = lower.algebra.expose(signal);
         let more = signal.variance();
-        lower.algebra.product(signal, signal).offset(more)
+        lower.algebra.product(&signal, &signal).offset(more)
     };
+    signals.iter().map(square).collect()
+}
+
+/// A square of a signal that does not know that it is itself: its own variance is private to each reader.
+fn unshared<'b>(lower: &mut Lower<'_, 'b>, node: &Node) -> Bundle<'b> {
+    let signals = lower.bundle(node, "in");
+    let square = |signal: &Signal<'b>| lower.algebra.product(signal, signal);
     signals.iter().map(square).collect()
 }
 
@@ -179,6 +190,11 @@ fn conformance_says_which_law_a_node_breaks() {
     let found = conformance::check(&NodeDef::new(&RIGHT, right));
     assert!(found.is_empty(), "{}", found[0]);
     let found = conformance::check(&NodeDef::new(&WRONG, wrong));
+    assert!(
+        found.iter().any(|breach| breach.violation.law == Law::Heat),
+        "{found:?}"
+    );
+    let found = conformance::check(&NodeDef::new(&WRONG, unshared));
     assert!(
         found.iter().any(|breach| breach.violation.law == Law::Heat),
         "{found:?}"
