@@ -116,6 +116,9 @@ impl<'g> Picture<'g> {
     }
 }
 
+/// Takes the side of the blocks of a pass, and the whole picture.
+pub type Progress<'a> = &'a mut (dyn FnMut(u32, &[f32]) + 'a);
+
 /// How a picture is evaluated. The default does it once, on all cores, and says nothing.
 #[derive(Default)]
 pub struct Job<'a> {
@@ -125,7 +128,7 @@ pub struct Job<'a> {
     /// first. A block is filtered as one large pixel, so that a coarse picture has no noise of its own.
     pub blocks: &'a [u32],
     /// Called with the whole picture after each of these passes, and with the side of its blocks.
-    pub progress: Option<&'a mut dyn FnMut(u32, &[f32])>,
+    pub progress: Option<Progress<'a>>,
 }
 
 impl fmt::Debug for Job<'_> {

@@ -500,15 +500,16 @@ fn perform(
     pictures: &mut Pictures,
     edit: &Edit,
 ) -> Result<Vec<patch::Patch>, Box<Diagnostic>> {
-    let types: Box<dyn Fn(&mipless_graph::Reference) -> Option<Type>> = match edit {
+    // Only a group asks for types, which take a look at the whole document.
+    let types = match edit {
         Edit::Group { graph, .. } => {
             let context = setup.context(&setup.options);
-            Box::new(context.types(document, pictures, graph))
+            Some(context.types(document, pictures, graph))
         }
-        _ => Box::new(|_| None),
+        _ => None,
     };
     let mut recorder = Recorder::new(document);
-    let done = apply::apply(&mut recorder, edit, &types);
+    let done = apply::apply(&mut recorder, edit, &|reference| types.as_ref()?(reference));
     let inverse = recorder.finish();
     match done {
         Ok(()) => Ok(inverse),
