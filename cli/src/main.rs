@@ -24,6 +24,7 @@ mod render;
 mod report;
 mod scene;
 mod schema;
+mod serve;
 mod sources;
 mod strips;
 mod trade;
@@ -82,6 +83,8 @@ enum Verb {
     Nodes(nodes::Arguments),
     /// Write a small commented graph to start from
     New(new::Arguments),
+    /// Edit and evaluate graphs for another program, by JSON-RPC 2.0 on standard input and output
+    Serve(serve::Arguments),
     /// Print the JSON Schema of graphs
     Schema,
     /// Print a script that completes the command line
@@ -104,6 +107,7 @@ fn main() -> ExitCode {
         Verb::Export(arguments) => export::run(arguments, &mut report),
         Verb::Nodes(arguments) => nodes::run(arguments, &mut report),
         Verb::New(arguments) => new::run(arguments, &mut report),
+        Verb::Serve(arguments) => serve::run(arguments, &mut report),
         Verb::Schema => schema::run(&mut report),
         Verb::Completions(arguments) => completions::run(arguments, Cli::command(), &mut report),
     };

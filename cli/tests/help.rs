@@ -61,3 +61,21 @@ fn the_page_of_the_command_line_is_fresh() {
         fs::write(&path, wanted).expect("the page is written");
     }
 }
+
+#[test]
+fn the_schema_of_the_protocol_is_fresh() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let path = root.join("docs/book/src/reference/serve.schema.json");
+    let held = fs::read_to_string(&path).unwrap_or_default();
+    let held = held.replace("\r\n", "\n");
+    let wanted = printed("mipless serve --schema");
+    if held != wanted {
+        let asked = std::env::var("MIPLESS_WRITE").is_ok_and(|value| value == "1");
+        assert!(
+            asked,
+            "{} is stale: bash .ci/fresh makes it fresh",
+            path.display()
+        );
+        fs::write(&path, wanted).expect("the schema is written");
+    }
+}

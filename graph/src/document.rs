@@ -94,9 +94,14 @@ pub struct Reference {
 impl Reference {
     /// The output `out` of a node.
     pub fn new(node: impl Into<String>) -> Self {
+        Self::to(node, "out")
+    }
+
+    /// An output of a node.
+    pub fn to(node: impl Into<String>, output: impl Into<String>) -> Self {
         Self {
             node: node.into(),
-            output: "out".to_owned(),
+            output: output.into(),
         }
     }
 }
@@ -110,6 +115,39 @@ pub enum Binding {
     Node(Reference),
     /// An input of the graph.
     Input(String),
+}
+
+impl Binding {
+    /// What the JSON of an input of a node says.
+    ///
+    /// # Errors
+    /// What is wrong with it, in one line: a connection that names neither a node nor an input of the
+    /// graph or names both, or a number that is not finite as f32.
+    pub fn from_json(json: &Value) -> Result<Self, String> {
+        let Value::Object(members) = json else {
+            read::finite(json)?;
+            return Ok(Self::Value(json.clone()));
+        };
+        let text = |key: &str| members.get(key).map(Value::as_str);
+        let known = ["node", "output", "input"];
+        let all_known = members.keys().all(|key| known.contains(&key.as_str()));
+        match (text("node"), text("output"), text("input")) {
+            (Some(Some(node)), output, None) if all_known && output != Some(None) => Ok(
+                Self::Node(Reference::to(node, output.flatten().unwrap_or("out"))),
+            ),
+            (None, None, Some(Some(input))) if all_known => Ok(Self::Input(input.to_owned())),
+            _ => Err(
+                "a connection is `{ \"node\": NAME }`, with the name of an output if it is not `out`, or \
+                 `{ \"input\": NAME }`"
+                    .to_owned(),
+            ),
+        }
+    }
+
+    /// The JSON of an input of a node.
+    pub fn to_json(&self) -> Value {
+        write::binding(self)
+    }
 }
 
 /// The text without the byte order mark that some editors put before it: it is no part of the

@@ -31,9 +31,9 @@ pub use diagnostic::{Diagnostic, Severity, suggest};
 pub use document::{Binding, Body, Document, InputEntry, Map, NodeEntry, Reference, VERSION};
 pub use graph::{Graph, Input, Node, NodeId, Output, Parameter, ParameterId, Source};
 pub use image::{FileReference, Images, Picture};
-pub use load::{Loaded, load};
+pub use load::{Loaded, load, load_with};
 pub use reach::{Interval, Reach};
-pub use resolve::{MAX_NESTING, MAX_NODES, linear_from_srgb, resolve};
+pub use resolve::{Draft, MAX_NESTING, MAX_NODES, draft, linear_from_srgb, resolve};
 pub use schema::schema;
 pub use setting::{SettingError, parse_setting};
 pub use spec::{

@@ -1,5 +1,6 @@
 //! From text to a resolved graph in one step, with every mistake located in the text.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use crate::document::{Tree, locate, unmarked};
@@ -22,6 +23,16 @@ pub struct Loaded {
 
 /// Reads, upgrades and resolves a document. A byte order mark before the text is passed over.
 pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
+    load_with(text, specs, |document| Cow::Borrowed(document))
+}
+
+/// The same; `complete` adds to the document what it does not say itself, such as the sub-graphs of a
+/// library. The document of the result is that of the text.
+pub fn load_with(
+    text: &str,
+    specs: &[&'static NodeSpec],
+    complete: impl for<'d> FnOnce(&'d Document) -> Cow<'d, Document>,
+) -> Loaded {
     let text = unmarked(text);
     let mut tree = match Tree::parse(text) {
         Ok(tree) => tree,
@@ -48,7 +59,7 @@ pub fn load(text: &str, specs: &[&'static NodeSpec]) -> Loaded {
         });
         if !lost {
             let failed = !diagnostics.is_empty();
-            let resolved = resolve_with_files(document, specs);
+            let resolved = resolve_with_files(&complete(document), specs);
             let mut found = without_consequences(&diagnostics, resolved.diagnostics);
             locate(text, &tree, &mut found);
             diagnostics.extend(found);

@@ -47,32 +47,47 @@ pub fn resolve(
     (resolved.graph, resolved.diagnostics)
 }
 
-/// What [`resolve_with_files`] finds.
-pub(crate) struct Resolved {
-    pub(crate) graph: Option<Graph>,
-    pub(crate) diagnostics: Vec<Diagnostic>,
+/// What becomes of a document that may have mistakes.
+#[derive(Clone, Debug)]
+pub struct Draft {
+    /// What could be made of the document: nodes that could not be made, and those that read them, are
+    /// not there, and neither are outputs that read one. A node that is there may have a mistake all the
+    /// same: the diagnostics say at which pointers. `None` where the whole is too large, or has sub-graphs
+    /// that contain themselves.
+    pub graph: Option<Graph>,
+    /// Every error and warning; they have pointers, but no lines.
+    pub diagnostics: Vec<Diagnostic>,
     /// The files that the nodes name, each place once.
-    pub(crate) files: Vec<FileReference>,
+    pub files: Vec<FileReference>,
 }
 
-/// The same with the files that the nodes name, whether or not there are errors.
-pub(crate) fn resolve_with_files(document: &Document, specs: &[&'static NodeSpec]) -> Resolved {
+/// Gives as much meaning to a document as it has, for editors: the outputs that a mistake does not
+/// reach.
+pub fn draft(document: &Document, specs: &[&'static NodeSpec]) -> Draft {
     let mut context = Context::new(specs);
     let mut templates = template::build(&mut context, document);
     order::sort(&mut context, &mut templates);
     let fits = nesting::check(&mut context, &mut templates);
     template::find_unused(&mut context, &templates);
     let graph = fits.then(|| expand::expand(&mut context, document, &templates));
-    let failed = context.diagnostics.iter().any(Diagnostic::is_error);
-    let graph = if failed { None } else { graph };
     // A sub-graph that is used several times names its files once.
     let mut seen = FxHashSet::default();
     let mut files = context.files;
     files.retain(|file| seen.insert(file.place.pointer.clone()));
-    Resolved {
+    Draft {
         graph,
         diagnostics: context.diagnostics,
         files,
+    }
+}
+
+/// The same where the graph is there only if it has no errors.
+pub(crate) fn resolve_with_files(document: &Document, specs: &[&'static NodeSpec]) -> Draft {
+    let draft = draft(document, specs);
+    let failed = draft.diagnostics.iter().any(Diagnostic::is_error);
+    Draft {
+        graph: draft.graph.filter(|_| !failed),
+        ..draft
     }
 }
 

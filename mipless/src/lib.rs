@@ -1,10 +1,11 @@
 //! Self-filtering procedural texture graphs for tools: load, check, edit, compile, evaluate.
 //!
-//! This crate needs no graphics device. It has three features, of which the first two are on by
+//! This crate needs no graphics device. It has four features, of which the first three are on by
 //! default:
 //!
 //! - `files` decodes the pictures that graphs name ([`Texture::from_file`], [`Texture::with_files`]).
 //!   Without it, a graph that names one has a located mistake, `feature-off`.
+//! - `render` evaluates pictures on all cores (`render`): views, tiles, coarse first.
 //! - `targets` validates shaders and translates them to SPIR-V, GLSL, HLSL and MSL by naga
 //!   (`target::validate`, `target::translate`, and all files of a texture, `artifact::Artifact`).
 //!   Without it there are WGSL and its [`manifest::Manifest`], and naga is not built.
@@ -120,19 +121,27 @@
 
 #[cfg(feature = "targets")]
 pub mod artifact;
+mod catalogue;
+#[cfg(feature = "targets")]
+pub mod conformance;
+pub mod define;
 mod evaluator;
 mod files;
 pub mod manifest;
 #[cfg(feature = "files")]
 mod picture;
+#[cfg(feature = "render")]
+pub mod render;
 mod resource;
+pub mod session;
 mod texture;
 
 /// Documents of other tools, read into graphs.
 #[cfg(feature = "import")]
 pub use mipless_import as import;
 
-pub use evaluator::{SetError, TextureEvaluator};
+pub use catalogue::{Catalogue, CatalogueError};
+pub use evaluator::{Channel, InputHandle, SetError, TextureEvaluator};
 pub use files::{
     Files, Folder, LARGEST_FILE, LARGEST_PICTURE, LARGEST_SIDE, NoFiles, Within, name_of_file,
 };

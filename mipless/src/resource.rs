@@ -30,28 +30,52 @@ impl Remark {
     }
 }
 
-/// Reads every file that a graph names, each once. A file that cannot be used has a picture of one
-/// texel, so that the graph can be checked all the same; an error says so.
+/// What a name of a file stands for: a picture of one texel where the file cannot be used, so that the
+/// graph can be checked all the same.
+pub(crate) struct Found {
+    picture: Arc<Picture>,
+    remark: Option<Remark>,
+}
+
+impl Found {
+    pub(crate) fn picture(&self) -> &Arc<Picture> {
+        &self.picture
+    }
+
+    /// What is said of the file where it is named.
+    pub(crate) fn diagnostic(&self, reference: &FileReference) -> Option<Diagnostic> {
+        let remark = self.remark.clone()?;
+        let diagnostic = match remark.severity {
+            Severity::Error => reference.error(remark.code, remark.message),
+            Severity::Warning | Severity::Note => reference.warning(remark.code, remark.message),
+        };
+        Some(diagnostic.help(remark.help))
+    }
+}
+
+/// Reads pictures.
+pub(crate) struct Reader<'f>(pub(crate) &'f dyn Files);
+
+impl Reader<'_> {
+    pub(crate) fn read(&self, name: &str) -> Found {
+        let (picture, remark) = one(name, self.0);
+        Found {
+            picture: Arc::new(picture),
+            remark,
+        }
+    }
+}
+
+/// Reads every file that a graph names, each once; an error says which cannot be used.
 pub(crate) fn read(references: &[FileReference], files: &dyn Files) -> (Images, Vec<Diagnostic>) {
     let mut images = Images::default();
-    let mut remarks: BTreeMap<&str, Option<Remark>> = BTreeMap::new();
+    let mut known: BTreeMap<&str, Found> = BTreeMap::new();
     let mut diagnostics = Vec::new();
     for reference in references {
         let name = reference.name.as_str();
-        let remark = remarks.entry(name).or_insert_with(|| {
-            let (picture, remark) = one(name, files);
-            images.insert(name, Arc::new(picture));
-            remark
-        });
-        if let Some(remark) = remark.clone() {
-            let diagnostic = match remark.severity {
-                Severity::Error => reference.error(remark.code, remark.message),
-                Severity::Warning | Severity::Note => {
-                    reference.warning(remark.code, remark.message)
-                }
-            };
-            diagnostics.push(diagnostic.help(remark.help));
-        }
+        let found = (known.entry(name)).or_insert_with(|| Reader(files).read(name));
+        images.insert(name, found.picture.clone());
+        diagnostics.extend(found.diagnostic(reference));
     }
     (images, diagnostics)
 }

@@ -1,14 +1,14 @@
 //! A checked graph with its catalogue.
 
 use crate::files::{Files, Folder, NoFiles, name_of_file};
-use crate::{Audit, Options, Program, TextureEvaluator, resource};
+use crate::{Audit, Catalogue, NodeDef, Options, Program, TextureEvaluator, resource};
 use std::fmt;
 use std::io;
 use std::path::Path;
 
 use mipless_graph::{
     CheckOptions, Checked, Diagnostic, Document, Graph, NodeSpec, Output, Parameter, ParameterId,
-    SettingError, Signal, Type, check, load,
+    SettingError, Signal, Type, check, load_with,
 };
 
 /// The specs of the catalogue.
@@ -73,6 +73,7 @@ impl std::error::Error for BakeError {}
 /// A texture graph without mistakes.
 #[derive(Clone, Debug)]
 pub struct Texture {
+    catalogue: Catalogue,
     checked: Checked,
     document: Document,
     warnings: Vec<Diagnostic>,
@@ -140,7 +141,20 @@ impl Texture {
         options: &CheckOptions,
         files: &dyn Files,
     ) -> Result<Self, Vec<Diagnostic>> {
-        let loaded = load(text, &specs());
+        Self::of_catalogue(&Catalogue::shipped(), name, text, options, files)
+    }
+
+    /// The same with the nodes and the library of a catalogue.
+    pub(crate) fn of_catalogue(
+        catalogue: &Catalogue,
+        name: &str,
+        text: &str,
+        options: &CheckOptions,
+        files: &dyn Files,
+    ) -> Result<Self, Vec<Diagnostic>> {
+        let loaded = load_with(text, catalogue.specs(), |document| {
+            catalogue.complete(document)
+        });
         let (images, found) = resource::read(&loaded.files, files);
         let mut diagnostics = loaded.diagnostics;
         diagnostics.extend(found);
@@ -156,8 +170,9 @@ impl Texture {
         match check(graph, options) {
             Ok(checked) if !unusable => {
                 diagnostics.extend(checked.warnings().iter().cloned());
-                diagnostics.extend(jumps(&checked));
+                diagnostics.extend(jumps(&checked, catalogue.definitions()));
                 Ok(Self {
+                    catalogue: catalogue.clone(),
                     checked,
                     document,
                     warnings: diagnostics,
@@ -188,6 +203,7 @@ impl Texture {
         let graph = graph.with_parts(graph.materials.first()?, parts);
         let checked = check(graph, options);
         Some(checked.map(|checked| Self {
+            catalogue: self.catalogue.clone(),
             checked,
             document: self.document.clone(),
             warnings: Vec::new(),
@@ -255,12 +271,12 @@ impl Texture {
 
     /// Compiles the graph for both back ends.
     pub fn compile(&self, options: &Options) -> Program {
-        mipless_codegen::compile(&self.checked, crate::catalogue(), options)
+        mipless_codegen::compile(&self.checked, self.catalogue.definitions(), options)
     }
 
     /// The same, with what [`Texture::audit`] says of it, where the method is `auto`.
     pub fn compile_audited(&self, options: &Options) -> (Program, Option<Audit>) {
-        mipless_codegen::compile_audited(&self.checked, crate::catalogue(), options)
+        mipless_codegen::compile_audited(&self.checked, self.catalogue.definitions(), options)
     }
 
     /// The texture in which these inputs are constants for good, written as on the command line: `0.5`,
@@ -295,7 +311,7 @@ impl Texture {
     /// What `auto` does where closed forms are wrong, and how far it is off: measured on the CPU at a
     /// few places, once for each graph, by [`Texture::compile`] too.
     pub fn audit(&self, options: &Options) -> Audit {
-        mipless_codegen::audit(&self.checked, crate::catalogue(), options)
+        mipless_codegen::audit(&self.checked, self.catalogue.definitions(), options)
     }
 
     /// Compiles the graph for evaluation on the CPU, with its inputs at their defaults.
@@ -304,9 +320,25 @@ impl Texture {
     }
 }
 
+impl Catalogue {
+    /// The graph of a text, whose nodes these are; a graph without a name is called `name`.
+    ///
+    /// # Errors
+    /// Every mistake, located, and the warnings with them.
+    pub fn texture(
+        &self,
+        name: &str,
+        text: &str,
+        options: &CheckOptions,
+        files: &dyn Files,
+    ) -> Result<Texture, Vec<Diagnostic>> {
+        Texture::of_catalogue(self, name, text, options, files)
+    }
+}
+
 /// Warnings of heights that jump.
-fn jumps(checked: &Checked) -> Vec<Diagnostic> {
-    let nodes = mipless_codegen::jumps(checked, crate::catalogue());
+pub(crate) fn jumps(checked: &Checked, catalogue: &[NodeDef]) -> Vec<Diagnostic> {
+    let nodes = mipless_codegen::jumps(checked, catalogue);
     let warn = |id| {
         let node = checked.graph().node(id);
         let message = format!("the height of a material jumps at `{}`", node.name);

@@ -21,6 +21,7 @@
 //! | `closure` | the errors that the check predicts, against rendered truth |
 //! | `importing`, `importing_json` | what each rule makes of documents of other tools |
 //! | `corpus` | public documents of other tools, where they are at hand |
+//! | `sessions` | edits are taken back, and what they make is what their text makes |
 //! | `tidy` | the order of the house: arrows, generated files, names |
 //! | `book` | the pages of the nodes and their pictures |
 //! | `links` | what all documents link to, show and quote |
@@ -29,11 +30,12 @@ pub mod book;
 pub mod case;
 pub mod document;
 pub mod generated;
+pub mod large;
 pub mod law;
 pub mod markdown;
 pub mod measured;
 pub mod mutation;
-pub mod random;
+pub mod random_edit;
 pub mod random_graph;
 pub mod reduce;
 pub mod shown;
@@ -44,6 +46,7 @@ pub mod tolerance;
 pub mod varied;
 
 use mipless::Method;
+pub use mipless::conformance::random;
 use std::path::PathBuf;
 
 /// The root of the workspace.
@@ -90,3 +93,8 @@ pub fn cases(usual: u32) -> u32 {
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/book/src/tool.md")]
 pub mod tool {}
+
+/// The page of the book for people who write an editor.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/book/src/sessions.md")]
+pub mod sessions {}

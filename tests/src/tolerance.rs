@@ -1,12 +1,13 @@
-//! Every tolerance of the suites, with its reason.
+//! Every tolerance of the suites, with its reason. Those of the laws of composition stand with the laws.
+
+pub use mipless::conformance::tolerance::{
+    FAR_FIELD, LEFT_OUT, RANGE, ROUNDING, SPREAD, VANISHING,
+};
 
 /// The difference, relative to max(1, |x|), up to which a pixel in f32 *agrees* with its f64 oracle:
 /// about 80 roundings of a number near 1, which is what a graph of some hundred operations makes.
 /// Pixels beyond it sit on an edge or in a cancellation, where f32 carries no information.
 pub const F32_AGREES: f64 = 1e-5;
-
-/// The share of pixels that need not agree with the oracle: those that an edge runs through.
-pub const LEFT_OUT: f64 = 0.01;
 
 /// The largest difference between a device and the CPU over the pixels that agree with the oracle,
 /// relative to max(1, |x|). WGSL lets a device be off by 2.5 units in the last place in a division,
@@ -14,31 +15,9 @@ pub const LEFT_OUT: f64 = 0.01;
 /// times below that.
 pub const DEVICE: f64 = 2e-4;
 
-/// How far a value may leave the range of its colour map, relative to max(1, |bound|): the
-/// roundings of the sum over the map's segments.
-pub const RANGE: f64 = 2e-5;
-
-/// The difference between a filtered value and the point value at a vanishing footprint, relative
-/// to max(1, |x|). Closed forms switch to their limits below σ ≈ 1e-6.
-pub const VANISHING: f64 = 1e-4;
-
-/// The difference between f32 and f64, relative to max(1, |x|), up to which a random graph agrees
-/// beyond what moving its footprint by a rounding does. Its numbers may be a thousand times as large
-/// inside as they are in its outputs.
-pub const ROUNDING: f64 = 1e-3;
-
-/// By how much of the square of its bounds' distance a variance may exceed what numbers within them
-/// can have.
-pub const SPREAD: f64 = 1e-3;
-
 /// The level of significance of the hypothesis tests of one suite together; each test of `n` gets
 /// 1/n of it (Bonferroni). With fixed random numbers a suite passes always or never.
 pub const SIGNIFICANCE: f64 = 1e-3;
-
-/// The share of the observed range of an output by which its far-field mean may be off beyond the
-/// statistical error of the samples and beyond what the check predicts: the distance of the noises'
-/// distributions from a Gaussian (0.0046 of each jump, four jumps in a ramp).
-pub const FAR_FIELD: f64 = 0.02;
 
 /// The error that the check predicts is an estimate from measured cascades over all footprints. What
 /// is measured is at most the first times it, and it is at most the second times what is measured.

@@ -9,13 +9,17 @@ use mipless_tests::case::graphs;
 use rayon::prelude::*;
 
 fn artifact(texture: &Texture, method: Method, entry: Entry) -> Artifact {
+    // GLSL ES 3.00 has no compute shaders.
+    let has_compute = |target: &Target| entry != Entry::Compute || *target != Target::GlslEs;
+    let targets = Target::ALL.into_iter().filter(has_compute);
     let recipe = Recipe {
         options: Options {
             method,
             ..Options::default()
         },
         emission: entry.into(),
-        targets: Target::ALL.to_vec(),
+        targets: targets.collect(),
+        forms: Vec::new(),
         is_shaded: false,
         source: None,
     };
@@ -55,7 +59,8 @@ fn missing(artifact: &Artifact) -> Vec<String> {
         for binding in &target.bindings {
             wanted.extend(binding.name.clone());
             wanted.extend(binding.block.clone());
-            wanted.push(binding.place.clone());
+            // GLSL ES finds textures by their names alone.
+            wanted.extend((file.key != "glsl-es").then(|| binding.place.clone()));
             assert!(file.key != "glsl" || binding.block.is_some(), "{binding:?}");
         }
         if let Some(sizes) = &target.buffer_sizes {

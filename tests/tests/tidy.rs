@@ -13,7 +13,10 @@ const ARROWS: [(&str, &[&str]); 8] = [
     ("codegen", &["graph"]),
     ("nodes", &["graph", "codegen"]),
     ("runtime", &["graph", "codegen"]),
-    ("mipless", &["graph", "import", "codegen", "nodes"]),
+    (
+        "mipless",
+        &["graph", "import", "codegen", "nodes", "runtime"],
+    ),
     (
         "cli",
         &["graph", "import", "codegen", "nodes", "runtime", "mipless"],

@@ -10,6 +10,7 @@ mod images;
 mod light;
 mod names;
 mod overwrite;
+mod serve;
 
 use folder::{Folder, GRAPH, Run};
 use serde_json::Value;

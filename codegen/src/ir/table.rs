@@ -91,6 +91,17 @@ impl Numbers {
         }
     }
 
+    /// Whether they are the same numbers in the same place, so that reading the one reads the other;
+    /// computes none.
+    pub fn is_shared_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.shared, &other.shared)
+    }
+
+    /// Whether they have been computed.
+    pub fn is_computed(&self) -> bool {
+        self.shared.data.get().is_some()
+    }
+
     /// How many numbers; computes none.
     pub fn len(&self) -> usize {
         self.len

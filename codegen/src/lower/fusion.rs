@@ -8,14 +8,19 @@
 //! between, or where the amplitude of the noise itself is live, the region is averaged where it
 //! runs, by [`super::taps`].
 
+use super::shape::baked;
 use super::{Arguments, Bundle, Compiler, Lower, Options, is_source, shape, value_results};
 use crate::cpu::{Evaluator, Input, Scratch};
 use crate::ir::{Builder, FunctionRef, Module};
-use crate::moments::{Algebra, Branch, Mode, Sampled, Samples, Signal, Tabulated, sample_points};
+use crate::moments::{
+    Algebra, Branch, Mode, Pyramids, Sampled, Samples, Signal, Tabulated, pyramids, sample_points,
+};
 use mipless_graph::{Node, NodeId, Source};
 use std::rc::Rc;
 use std::sync::{Arc, LazyLock};
 
+/// What tells the shape of a pyramid from that of a map of the same nodes.
+const PYRAMIDS: u32 = 0x5059_5241;
 /// The most functions that are not linear in one region.
 const LONGEST: u32 = 12;
 /// The most knots of a single function in closed form: with more the table takes less time (on a
@@ -241,9 +246,19 @@ impl<'b> Lower<'_, 'b> {
             shape.push(u32::from(periodic));
             shape
         });
-        let (index, entry) = match shape {
-            Some(shape) => *(compiler.shapes.borrow_mut().entry(shape)).or_insert((index, entry)),
+        let (index, entry) = match &shape {
+            Some(shape) => {
+                *(compiler.shapes.borrow_mut().entry(shape.clone())).or_insert((index, entry))
+            }
             None => (index, entry),
+        };
+        // What a pyramid is of: programs that have the same one share it.
+        let pyramids_of = |samples: &Samples, component: usize, rises: bool| {
+            let shape = shape.clone().map(|mut shape| {
+                shape.extend([PYRAMIDS, component as u32, u32::from(rises)]);
+                shape
+            });
+            baked(shape, || pyramids(samples, component))
         };
         let known = compiler.fused.borrow().get(&index).cloned();
         let samples = known.unwrap_or_else(|| {
@@ -274,14 +289,17 @@ impl<'b> Lower<'_, 'b> {
                 let table = known.unwrap_or_else(|| {
                     let of = (function.clone(), branch.clone(), i);
                     let bounds = (domain, periodic, signal.range);
-                    let table = Tabulated::new(self.module, &name, of, bounds, &samples);
+                    let pyramids = pyramids_of(&samples, i, false);
+                    let table = Tabulated::new(self.module, &name, of, bounds, pyramids);
                     (compiler.tabulated.borrow_mut()).insert(key, table.clone());
                     table
                 });
                 let mut table = table.within(signal.range);
                 if self.algebra.derives() {
                     let of = (&function, i, closed.len());
-                    let rise = self.rise((&key_of_rise, &name), of, (domain, periodic), &samples);
+                    let pyramids = |rises: &Samples| pyramids_of(rises, i, true);
+                    let of = (of, (domain, periodic));
+                    let rise = self.rise((&key_of_rise, &name), of, &samples, pyramids);
                     table = table.with_rise(rise);
                 }
                 self.algebra.transfer(&chain.signal, &table)
@@ -293,9 +311,12 @@ impl<'b> Lower<'_, 'b> {
     fn rise(
         &mut self,
         (key, name): (&str, &str),
-        (function, component, components): (&FunctionRef, usize, usize),
-        (domain, periodic): ([f32; 2], bool),
+        ((function, component, components), (domain, periodic)): (
+            (&FunctionRef, usize, usize),
+            ([f32; 2], bool),
+        ),
         samples: &Samples,
+        pyramids: impl FnOnce(&Samples) -> Pyramids,
     ) -> Tabulated {
         if let Some(known) = self.compiler.tabulated.borrow().get(key) {
             return known.clone();
@@ -326,7 +347,7 @@ impl<'b> Lower<'_, 'b> {
             &name,
             (rise, branch, component),
             bounds,
-            &rises,
+            pyramids(&rises),
         );
         (self.compiler.tabulated.borrow_mut()).insert(key.to_owned(), table.clone());
         table

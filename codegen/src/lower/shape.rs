@@ -2,7 +2,6 @@
 
 use super::Compiler;
 use crate::ir::{Borrowed, Numbers};
-use crate::moments::Tables;
 use mipless_graph::{Literal, NodeId, Parameter, Source, Type};
 use rustc_hash::FxHashMap;
 use std::sync::{LazyLock, Mutex, PoisonError, RwLock};
@@ -97,19 +96,20 @@ fn parameter(parameter: &Parameter, words: &mut Shape) {
 
 /// The tables that programs of this process have, by the shapes of what they are of: those of one
 /// shape are baked once, as long as one of the programs is there.
-static BAKED: LazyLock<Mutex<FxHashMap<Shape, [Borrowed; 4]>>> = LazyLock::new(Mutex::default);
+static BAKED: LazyLock<Mutex<FxHashMap<Shape, Vec<Borrowed>>>> = LazyLock::new(Mutex::default);
 
 /// The tables of a shape, made where no program has them. What has no shape has tables of its own.
-pub(super) fn baked(shape: Option<Shape>, make: impl FnOnce() -> Tables) -> Tables {
+pub(super) fn baked<const N: usize>(
+    shape: Option<Shape>,
+    make: impl FnOnce() -> [Numbers; N],
+) -> [Numbers; N] {
     let Some(shape) = shape else {
         return make();
     };
     let mut known = BAKED.lock().unwrap_or_else(PoisonError::into_inner);
-    let there = |tables: &[Borrowed; 4]| {
-        let [a, b, c, d] = tables;
-        Some([a.get()?, b.get()?, c.get()?, d.get()?])
-    };
-    if let Some(tables) = known.get(&shape).and_then(there) {
+    let there = |tables: &Vec<Borrowed>| tables.iter().map(Borrowed::get).collect();
+    let found: Option<Vec<Numbers>> = known.get(&shape).and_then(there);
+    if let Some(tables) = found.and_then(|tables| tables.try_into().ok()) {
         return tables;
     }
     let tables = make();
@@ -117,7 +117,7 @@ pub(super) fn baked(shape: Option<Shape>, make: impl FnOnce() -> Tables) -> Tabl
         known.retain(|_, tables| there(tables).is_some());
     }
     if known.len() < MOST {
-        known.insert(shape, tables.each_ref().map(Numbers::borrowed));
+        known.insert(shape, tables.iter().map(Numbers::borrowed).collect());
     }
     tables
 }

@@ -2,7 +2,7 @@
 
 use super::{Lower, PixelFilter, identifier};
 use crate::ir::{Builder, FunctionRef, Numbers};
-use crate::moments::{Branch, Sampled, Samples, Tabulated, sample_points};
+use crate::moments::{Branch, Sampled, Samples, Tabulated, pyramids, sample_points};
 use mipless_graph::{Node, Picture};
 use std::any::Any;
 use std::sync::{Arc, LazyLock};
@@ -145,7 +145,7 @@ impl Lower<'_, '_> {
                 &identifier(name),
                 (of.clone(), branch.clone(), i),
                 (domain, false, range),
-                &samples,
+                pyramids(&samples, i),
             );
             let mut tabulated = self.compiler.tabulated.borrow_mut();
             tabulated.insert(place(i), table.clone());

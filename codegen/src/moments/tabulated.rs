@@ -233,6 +233,20 @@ const MOMENTS: [(Moment, &str); 5] = [
 /// A function's values at [`sample_points`], one vector a component, computed once when first asked.
 pub(crate) type Samples = Arc<LazyLock<Vec<Sampled>, Box<dyn Fn() -> Vec<Sampled> + Send + Sync>>>;
 
+/// The tables of one component of a function, in the order of [`MOMENTS`].
+pub(crate) type Pyramids = [Numbers; 5];
+
+/// They are computed from the function's values when they are first read.
+pub(crate) fn pyramids(samples: &Samples, component: usize) -> Pyramids {
+    let total = (0..LEVELS).map(texels).sum();
+    MOMENTS.map(|(moment, _)| {
+        let (baked, tried) = (Arc::clone(samples), Arc::clone(samples));
+        let bake = move || baked[component].pyramid(moment);
+        let error = move |pyramid: &[f32]| tried[component].error(pyramid, moment);
+        Numbers::lazy(total, bake).with_error(error)
+    })
+}
+
 /// A function of one number with moments that are baked when their tables are first read; tables
 /// that nothing reads are pruned with the module.
 #[derive(Clone, Debug)]
@@ -255,14 +269,11 @@ impl Tabulated {
         name: &str,
         (function, branch, component): (FunctionRef, Branch, usize),
         (domain, periodic, range): ([f32; 2], bool, [f32; 2]),
-        samples: &Samples,
+        pyramids: Pyramids,
     ) -> Self {
-        let total = (0..LEVELS).map(texels).sum();
-        let tables = MOMENTS.map(|(moment, suffix)| {
-            let (baked, tried) = (Arc::clone(samples), Arc::clone(samples));
-            let bake = move || baked[component].pyramid(moment);
-            let error = move |pyramid: &[f32]| tried[component].error(pyramid, moment);
-            let numbers = Numbers::lazy(total, bake).with_error(error);
+        let mut suffixes = MOMENTS.iter();
+        let tables = pyramids.map(|numbers| {
+            let (_, suffix) = suffixes.next().expect("a name for each moment");
             module.push_table(format!("{name}_{suffix}"), numbers)
         });
         Self {

@@ -34,6 +34,26 @@ pub(super) fn read(text: &str, tree: &mut Tree) -> (Option<Document>, Vec<Diagno
     (Some(document), reader.diagnostics)
 }
 
+/// Whether the numbers of a literal are finite as f32; else what to say of one that is not.
+pub(super) fn finite(literal: &Value) -> Result<(), String> {
+    // JSON that serde has read is at most 128 deep, so that this stack stays small.
+    let mut rest = vec![literal];
+    while let Some(value) = rest.pop() {
+        match value {
+            Value::Number(number) => {
+                let finite = |number: f64| (number as f32).is_finite();
+                if !number.as_f64().is_some_and(finite) {
+                    return Err(format!("{number} is not finite as a 32-bit float"));
+                }
+            }
+            Value::Array(items) => rest.extend(items),
+            Value::Object(members) => rest.extend(members.values()),
+            Value::Null | Value::Bool(_) | Value::String(_) => {}
+        }
+    }
+    Ok(())
+}
+
 /// A segment of the pointer to the value that is being read.
 #[derive(Clone, Copy)]
 enum Segment<'t> {

@@ -103,7 +103,7 @@ fn node(entry: &NodeEntry) -> Value {
     Value::Object(json)
 }
 
-fn binding(binding: &Binding) -> Value {
+pub(super) fn binding(binding: &Binding) -> Value {
     match binding {
         Binding::Value(value) => value.clone(),
         Binding::Node(node) => reference(node),
