@@ -7,6 +7,8 @@ mod glsl;
 #[cfg(feature = "targets")]
 mod included;
 #[cfg(feature = "targets")]
+mod language;
+#[cfg(feature = "targets")]
 mod translate;
 #[cfg(feature = "targets")]
 mod validate;
@@ -14,7 +16,9 @@ mod validate;
 #[cfg(feature = "targets")]
 pub(crate) use included::items;
 #[cfg(feature = "targets")]
-pub use translate::{Target, TranslateError, Translated, translate};
+pub use language::{Target, TranslateError};
+#[cfg(feature = "targets")]
+pub use translate::{Translated, translate};
 #[cfg(feature = "targets")]
 pub use validate::{ValidateError, Validated, validate};
 

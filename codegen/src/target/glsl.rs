@@ -1,8 +1,8 @@
 //! GLSL, by naga: whole shaders, and functions to include.
 
 use super::included::included;
-use super::validate::revalidate;
-use super::{Target, TranslateError, Validated};
+use super::language::{Target, TranslateError};
+use super::validate::{Validated, revalidate};
 use crate::wgsl::{Shader, Stage, camel};
 use naga::back::glsl;
 use naga::proc::BoundsCheckPolicies;
