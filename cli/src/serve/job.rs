@@ -7,7 +7,7 @@ use mipless::render::{Job, Picture, RenderError, Size, View};
 use mipless::session::Compiled;
 use mipless::wgsl;
 use mipless_runtime::image::{Image, channel_names};
-use mipless_runtime::image_file::{self, Bits, Format};
+use mipless_runtime::image_file::{self, Bits, Format, Space};
 use serde_json::{Value, json};
 use std::collections::VecDeque;
 use std::io::Write;
@@ -263,7 +263,8 @@ impl<W: Write + Send + 'static> Crew<W> {
             } else {
                 let planes: Vec<Vec<f32>> = channels.iter().map(|c| of(c).collect()).collect();
                 let image = Image::new(sight.size, channel_names(ty), planes);
-                let png = Format::Png(Bits::Eight);
+                // A preview is looked at, whatever it shows.
+                let png = Format::Png(Bits::Eight, Space::Srgb);
                 let bytes = image_file::encode(Path::new("picture.png"), &image, png);
                 let failed = |error| Failure::new(INTERNAL, format!("{error}"));
                 base64::encode(&bytes.map_err(failed)?)
