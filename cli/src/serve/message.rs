@@ -28,14 +28,19 @@ pub(super) enum Incoming {
 
 /// Reads one message of at most `most` bytes.
 pub(super) fn read(from: &mut impl BufRead, most: u64) -> io::Result<(Incoming, Framing)> {
+    // The first line of a head may be longer than the longest message.
+    let longest = most.max(HEAD);
     loop {
         let mut line = Vec::new();
-        let length = from.by_ref().take(most + 2).read_until(b'\n', &mut line)?;
+        let length = from
+            .by_ref()
+            .take(longest + 2)
+            .read_until(b'\n', &mut line)?;
         if length == 0 {
             return Ok((Incoming::End, Framing::Line));
         }
         let is_whole = line.ends_with(b"\n");
-        if !is_whole && length as u64 > most + 1 {
+        if !is_whole && length as u64 > longest + 1 {
             pass_line(from)?;
             return Ok((Incoming::TooLarge, Framing::Line));
         }
@@ -46,7 +51,11 @@ pub(super) fn read(from: &mut impl BufRead, most: u64) -> io::Result<(Incoming, 
         if is_head(text) {
             return framed(from, text, most).map(|read| (read, Framing::Length));
         }
-        return Ok((Incoming::Message(text.to_vec()), Framing::Line));
+        let message = match text.len() as u64 > most {
+            true => Incoming::TooLarge,
+            false => Incoming::Message(text.to_vec()),
+        };
+        return Ok((message, Framing::Line));
     }
 }
 

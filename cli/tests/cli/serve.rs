@@ -2,7 +2,7 @@
 
 use mipless::conformance::random::Random;
 use serde_json::{Value, json};
-use std::io::{BufRead, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::thread;
 
@@ -63,6 +63,8 @@ impl Client {
 
     fn end(mut self) {
         drop(self.to.take());
+        // Whatever is still being told: a pipe that nobody empties would hold the server up.
+        io::copy(&mut self.from, &mut io::sink()).expect("bytes");
         let status = self.child.wait().expect("it ends");
         assert!(status.success(), "{status}");
     }
