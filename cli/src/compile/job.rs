@@ -1,6 +1,6 @@
 //! What is done to every graph.
 
-use super::output::Folder;
+use super::output::{Done, Folder, Made};
 use super::{Arguments, EntryName};
 use crate::forms;
 use crate::load::{self, allows_sampling};
@@ -14,8 +14,7 @@ use mipless::wgsl::{self, Entry};
 use mipless::{Diagnostic, Options, Texture, name_of_file};
 use mipless_import::Format;
 use mipless_runtime::lit;
-use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What is done to every graph.
 pub(super) struct Job<'a> {
@@ -23,22 +22,6 @@ pub(super) struct Job<'a> {
     targets: Vec<Target>,
     forms: Vec<Form>,
     emission: wgsl::Options,
-}
-
-/// What was made of a graph.
-pub(super) struct Done {
-    /// The files beside it that it reads.
-    pub(super) reads: Vec<PathBuf>,
-    /// What is to be written, unless all of it is there.
-    pub(super) made: Made,
-}
-
-/// What is to be written.
-pub(super) enum Made {
-    /// Nothing: the folder holds it, and this manifest says so.
-    Unchanged(Box<Value>),
-    /// These files.
-    Files(Box<Artifact>),
 }
 
 impl<'a> Job<'a> {

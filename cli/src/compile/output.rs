@@ -1,6 +1,5 @@
 //! The folder of shaders: what is in it already, and what is written into it.
 
-use super::job::{Done, Made};
 use crate::mistake::Mistake;
 use crate::sources::Sources;
 use mipless::Files;
@@ -13,6 +12,22 @@ use std::fmt::{self, Display};
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// What was made of a graph.
+pub(super) struct Done {
+    /// The files beside it that it reads.
+    pub(super) reads: Vec<PathBuf>,
+    /// What is to be written, unless all of it is there.
+    pub(super) made: Made,
+}
+
+/// What is to be written.
+pub(super) enum Made {
+    /// Nothing: the folder holds it, and this manifest says so.
+    Unchanged(Box<Value>),
+    /// These files.
+    Files(Box<Artifact>),
+}
 
 /// What a manifest begins with.
 const BEGINNING: &[u8] = b"{\n  \"compiler\": \"mipless ";
