@@ -1,7 +1,8 @@
 //! Random graphs as people write them: of any nodes of the catalogue, as often as they are used, with
 //! inputs, several outputs and sub-graphs, whose types fit and whose numbers their ports accept.
 //!
-//! A graph depends on its seed and on the catalogue alone. What the check still refuses (a divisor
+//! A graph depends on its seed alone: what comes into the catalogue later is drawn by later seeds
+//! ([`weight`]). What the check still refuses (a divisor
 //! that may be 0, say) is repaired.
 
 mod literal;
@@ -15,6 +16,7 @@ use mipless::{Method, NodeSpec, Texture, Type};
 use mipless_graph::{Default, OutputType, PortSpec, PortType};
 pub use repair::repaired;
 use serde_json::{Map, Value, json};
+use weight::Generation;
 
 /// Nodes of a graph of [`of_seed`].
 const SIZES: [f64; 2] = [3.0, 60.0];
@@ -70,7 +72,7 @@ pub fn of_seed(seed: u64) -> (Value, Texture) {
     let mut random = Random::new(seed);
     let [least, most] = SIZES;
     let nodes = least * (most / least).powf(random.unit());
-    let valid = |_| repaired(graph(&mut random, nodes as usize));
+    let valid = |_| repaired(graph(&mut random, nodes as usize, Generation::of(seed)));
     let found = (0..20).find_map(valid);
     found.unwrap_or_else(|| panic!("no graph of the seed {seed} is accepted"))
 }
@@ -94,10 +96,10 @@ pub fn methods(seed: u64) -> Vec<Method> {
 /// # Panics
 /// If there are no nodes.
 pub fn text(random: &mut Random, nodes: usize) -> String {
-    serde_json::to_string_pretty(&graph(random, nodes)).expect("JSON")
+    serde_json::to_string_pretty(&graph(random, nodes, Generation::NEWEST)).expect("JSON")
 }
 
-fn graph(random: &mut Random, nodes: usize) -> Value {
+fn graph(random: &mut Random, nodes: usize, generation: Generation) -> Value {
     assert!(nodes > 0, "a graph has nodes");
     let odd = random.happens(0.1);
     let mut name = |usual: &str| {
@@ -113,7 +115,7 @@ fn graph(random: &mut Random, nodes: usize) -> Value {
     let mut graphs = Map::new();
     while nodes > 5 && subs.len() < 2 && random.happens(0.2) {
         let sub_name = format!("part{}", subs.len());
-        let (sub, body) = sub_graph(random, sub_name.clone());
+        let (sub, body) = sub_graph(random, sub_name.clone(), generation);
         subs.push(sub);
         graphs.insert(sub_name, body);
     }
@@ -121,7 +123,7 @@ fn graph(random: &mut Random, nodes: usize) -> Value {
         let ty = input["type"].as_str().and_then(Type::by_name);
         (name.clone(), ty.expect("the type of an input"))
     }));
-    body.fill(random, nodes, &subs);
+    body.fill(random, nodes, &subs, generation);
     let outputs = body.outputs(random, first);
     let mut graph = json!({
         "version": 1,
@@ -157,7 +159,7 @@ fn live(random: &mut Random, knob: String) -> Map<String, Value> {
 }
 
 /// A small sub-graph with inputs of some types.
-fn sub_graph(random: &mut Random, name: String) -> (Sub, Value) {
+fn sub_graph(random: &mut Random, name: String, generation: Generation) -> (Sub, Value) {
     let types = [Type::Float, Type::Vector2, Type::Color3];
     let inputs: Vec<(String, Type)> = ["x", "y", "z"][..1 + random.below(3)]
         .iter()
@@ -165,7 +167,7 @@ fn sub_graph(random: &mut Random, name: String) -> (Sub, Value) {
         .collect();
     let mut body = Body::new(inputs.iter().cloned());
     let nodes = 2 + random.below(6);
-    body.fill(random, nodes, &[]);
+    body.fill(random, nodes, &[], generation);
     let outputs = body.outputs(random, "out".to_owned());
     let entries: Map<String, Value> = (inputs.iter())
         .map(|(name, ty)| {
@@ -211,7 +213,7 @@ impl Body {
     }
 
     /// Adds nodes: sources first, later ones reading what was made before.
-    fn fill(&mut self, random: &mut Random, nodes: usize, subs: &[Sub]) {
+    fn fill(&mut self, random: &mut Random, nodes: usize, subs: &[Sub], generation: Generation) {
         let sources = 1 + nodes / 6;
         for index in 0..nodes {
             if !subs.is_empty() && random.happens(0.08) {
@@ -219,7 +221,7 @@ impl Body {
                 self.use_sub(random, index, sub);
                 continue;
             }
-            let drawn = weight::node(random);
+            let drawn = weight::node(random, generation);
             let spec = if index < sources && random.happens(0.8) {
                 let source = *random.choose(&SOURCES);
                 spec(source)

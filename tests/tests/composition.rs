@@ -52,52 +52,80 @@ fn graphs_that_broke_a_law_break_none() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// How many graphs of [`SEEDS`] may break each law that is not kept yet, by any method. These numbers
-/// only fall, as long as the catalogue, and with it the graphs, are the same: with four more nodes
-/// (scatter, truchet, weave, rays) they are other graphs, which nobody had looked at. Of graphs
-/// without these nodes 1, 10, 11, 16 and 6 break them.
-const BROKEN: [(Law, usize); 5] = [
-    // `remap` from a range that has no width (139); 90 and 268 (.2526 for at most .252) have not been
-    // looked into.
-    (Law::Spread, 3),
-    // Edges that lie at the value itself: a pattern's 0 or 1 into `floor`, cells, a divisor or a bound.
-    (Law::Vanishing, 15),
-    // Seven points of what an input of the graph shapes, whose mean nobody knows beforehand, and what
-    // has no mean.
-    (Law::Far, 12),
-    // Edges, too: one of a few points that lies on one side or the other is its share of the jump.
-    (Law::Rounding, 17),
-    // Where a point is next to exact: six are off by less than .0001 (65, 77, 116, 180, 210, 282); 134
-    // by .0024 for next to nothing, 200 by .0088 for .0053, 299 by .43 for .22.
-    (Law::Worse, 9),
+/// Random graphs in every run: of the seeds from a first one on, so many. Seeds from 10,000 on draw from
+/// more nodes (scatter, truchet, weave, rays). Of each group a number is set by `MIPLESS_GRAPHS`, for runs
+/// of hours; then every graph goes through every method.
+const GROUPS: [Group; 2] = [
+    Group {
+        first: 0,
+        count: 300,
+        broken: [
+            // A soft circle under a footprint of 10⁶ units that is a line (198, `split:4`).
+            (Law::Spread, 1),
+            // Edges that lie at the value itself: a pattern's 0 or 1 into `floor`, cells, a divisor or
+            // a bound.
+            (Law::Vanishing, 10),
+            // Seven points of what an input of the graph shapes, whose mean nobody knows beforehand,
+            // and what has no mean.
+            (Law::Far, 11),
+            // Edges, too: one of a few points that lies on one side or the other is its share of the
+            // jump.
+            (Law::Rounding, 16),
+            // Where a point is next to exact: all six are off by less than .0001 (4, 21, 56, 61, 281,
+            // 296).
+            (Law::Worse, 6),
+        ],
+    },
+    Group {
+        first: 10_000,
+        count: 100,
+        // What graphs break that nobody has looked at: their rate is what is to be expected of any.
+        broken: [
+            (Law::Spread, 2),
+            // Ties (10002, 10010, 10015, 10067), ranges of no width (10016), next to poles (10018,
+            // 10066), rises without bound (10011, 10035), among others.
+            (Law::Vanishing, 14),
+            (Law::Far, 6),
+            (Law::Rounding, 11),
+            // By less than .0001, but 10011: .0025 for next to nothing.
+            (Law::Worse, 4),
+        ],
+    },
 ];
 
-/// Random graphs in every run. Of which a number is set by `MIPLESS_GRAPHS`, for runs of hours, every
-/// graph goes through every method.
-const SEEDS: u64 = 300;
+/// Seeds, and how many of their graphs may break each law that is not kept yet, by any method. These
+/// numbers only fall.
+struct Group {
+    first: u64,
+    count: u64,
+    broken: [(Law, usize); 5],
+}
 
 #[test]
 fn random_graphs_keep_the_laws() {
-    let found: Vec<(u64, Vec<Violation>)> = (0..asked().unwrap_or(SEEDS))
-        .into_par_iter()
-        .map(|seed| {
-            let (_, texture) = of_seed(seed);
-            (seed, violations(&texture, &Law::ALL, &methods(seed)))
-        })
-        .collect();
     let mut faults = Vec::new();
-    for law in Law::ALL {
-        let graphs: Vec<String> = (found.iter())
-            .filter_map(|(seed, all)| {
-                let violation = all.iter().find(|violation| violation.law == law)?;
-                Some(format!("seed {seed}: {violation}"))
+    for group in &GROUPS {
+        let count = asked().unwrap_or(group.count);
+        let found: Vec<(u64, Vec<Violation>)> = (group.first..group.first + count)
+            .into_par_iter()
+            .map(|seed| {
+                let (_, texture) = of_seed(seed);
+                (seed, violations(&texture, &Law::ALL, &methods(seed)))
             })
             .collect();
-        let known = BROKEN.iter().find(|(broken, _)| *broken == law);
-        let most = known.map_or(0, |&(_, most)| most * found.len() / SEEDS as usize);
-        println!("{}: {} graphs of {}", law.name(), graphs.len(), found.len());
-        if graphs.len() > most {
-            faults.push(format!("at most {most} graphs:\n{}", graphs.join("\n")));
+        for law in Law::ALL {
+            let graphs: Vec<String> = (found.iter())
+                .filter_map(|(seed, all)| {
+                    let violation = all.iter().find(|violation| violation.law == law)?;
+                    Some(format!("seed {seed}: {violation}"))
+                })
+                .collect();
+            let known = group.broken.iter().find(|(broken, _)| *broken == law);
+            let most = known.map_or(0, |&(_, most)| most * found.len() / group.count as usize);
+            println!("{}: {} graphs of {count}", law.name(), graphs.len());
+            if graphs.len() > most {
+                faults.push(format!("at most {most} graphs:\n{}", graphs.join("\n")));
+            }
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));

@@ -76,15 +76,44 @@ const OFTEN: &[(u32, &[&str])] = &[
     ),
 ];
 
-/// The sum of the weights up to each node of the catalogue.
-static SUMS: LazyLock<Vec<u32>> = LazyLock::new(|| {
-    let sum = |sum: &mut u32, def: &NodeDef| {
-        // A material ends a graph: no node reads it.
-        let is_read = def.spec.material().is_none();
-        *sum += if is_read { weight(def.spec.name) } else { 0 };
-        Some(*sum)
+/// What has come into the catalogue since random graphs have been held to laws, one row at a time.
+const NEWER: [&[&str]; 1] = [&["rays", "scatter", "truchet", "weave"]];
+
+/// How many seeds draw from the catalogue as it stood before each row of [`NEWER`], so that their graphs
+/// are the same when it grows.
+const SEEDS: u64 = 10_000;
+
+/// The catalogue as it stood at some time: with so many rows of [`NEWER`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Generation(usize);
+
+impl Generation {
+    /// All of the catalogue.
+    pub(super) const NEWEST: Self = Self(NEWER.len());
+
+    /// What the graph of a seed is made of.
+    pub(super) fn of(seed: u64) -> Self {
+        Self((seed / SEEDS).min(NEWER.len() as u64) as usize)
+    }
+}
+
+/// The sum of the weights up to each node of the catalogue, generation by generation.
+static SUMS: LazyLock<Vec<Vec<u32>>> = LazyLock::new(|| {
+    let sums = |generation: usize| {
+        let sum = |sum: &mut u32, def: &NodeDef| {
+            // A material ends a graph: no node reads it.
+            let is_read = def.spec.material().is_none();
+            let is_there = !NEWER[generation..].concat().contains(&def.spec.name);
+            *sum += if is_read && is_there {
+                weight(def.spec.name)
+            } else {
+                0
+            };
+            Some(*sum)
+        };
+        mipless::catalogue().iter().scan(0, sum).collect()
     };
-    mipless::catalogue().iter().scan(0, sum).collect()
+    (0..=NEWER.len()).map(sums).collect()
 });
 
 fn weight(name: &str) -> u32 {
@@ -93,10 +122,11 @@ fn weight(name: &str) -> u32 {
 }
 
 /// A node, as often as people use it.
-pub(super) fn node(random: &mut Random) -> &'static NodeSpec {
-    let total = *SUMS.last().expect("the catalogue holds nodes");
+pub(super) fn node(random: &mut Random, Generation(generation): Generation) -> &'static NodeSpec {
+    let sums = &SUMS[generation];
+    let total = *sums.last().expect("the catalogue holds nodes");
     let place = random.below(total as usize) as u32;
-    mipless::catalogue()[SUMS.partition_point(|&sum| sum <= place)].spec
+    mipless::catalogue()[sums.partition_point(|&sum| sum <= place)].spec
 }
 
 #[cfg(test)]
@@ -116,7 +146,7 @@ mod tests {
         let mut random = Random::new(1);
         let mut drawn = std::collections::BTreeSet::new();
         for _ in 0..20_000 {
-            drawn.insert(node(&mut random).name);
+            drawn.insert(node(&mut random, Generation::NEWEST).name);
         }
         let is_read = |def: &&NodeDef| def.spec.material().is_none();
         assert_eq!(

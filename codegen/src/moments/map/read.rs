@@ -75,11 +75,15 @@ struct Taps<'b> {
     shrink: Float<'b>,
     /// Whether the footprint is smaller than the finest σ.
     below: Bool<'b>,
+    /// The distance of a tap of x = 1 from the mean.
+    axis: Vec2<'b>,
     places: [Tap<'b>; 5],
 }
 
 struct Tap<'b> {
     weight: f32,
+    /// x: how far along the axis.
+    along: f32,
     offset: Vec2<'b>,
     place: Vec2<'b>,
 }
@@ -104,6 +108,7 @@ impl Map {
         let [width, height] = self.domain.widths();
         // What is stored is relative to σ.
         let by_s = 1.0 / taps.s;
+        let by_variance = 1.0 / (taps.s.square() + taps.axis.dot(taps.axis));
         let components = 0..self.packing.components();
         let tapped: Vec<Float<'b>> = (components.clone())
             .map(|i| taps.weighted(|k| means[k][i]))
@@ -112,7 +117,13 @@ impl Map {
         components
             .map(|i| {
                 let slopes = |k: usize| Vec2([slopes_x[k][i], slopes_y[k][i]]) * by_s;
-                let all = Vec2([0, 1].map(|axis| taps.weighted(|k| slopes(k)[axis])));
+                // α is the regression on the place: across the axis the mean of the slopes, along it
+                // cov(T, x)/Var x, of which the taps' means have their part. The mean of the slopes
+                // alone would take a jump at a tap for one of the whole footprint.
+                let within = Vec2([0, 1].map(|axis| taps.weighted(|k| slopes(k)[axis])));
+                let between = taps.weighted(|k| (means[k][i] - tapped[i]) * taps.places[k].along);
+                let beyond = (between - taps.axis.dot(within)) * by_variance;
+                let all = within + taps.axis * beyond;
                 // The residual T − E[T] − α·(x − m), split at the taps: within each, D and the
                 // slope beyond α; between them, the means beyond the line.
                 let distortion = taps.weighted(|k| {
@@ -194,6 +205,7 @@ impl Map {
             });
             Tap {
                 weight: weight as f32,
+                along: x as f32,
                 offset,
                 place,
             }
@@ -203,6 +215,7 @@ impl Map {
             s: isotropic.sqrt(),
             shrink: share.min(1.0),
             below: share.lt(1.0),
+            axis,
             places,
         }
     }
