@@ -33,6 +33,19 @@ fn fresh(page: &str) -> String {
     text
 }
 
+/// That a generated file is what is wanted; where `MIPLESS_WRITE` asks for it, it becomes that.
+fn hold(path: &Path, held: &str, wanted: &str) {
+    if held != wanted {
+        let asked = std::env::var("MIPLESS_WRITE").is_ok_and(|value| value == "1");
+        assert!(
+            asked,
+            "{} is stale: bash .ci/fresh makes it fresh",
+            path.display()
+        );
+        fs::write(path, wanted).expect("the file is written");
+    }
+}
+
 #[test]
 fn the_page_of_the_command_line_is_fresh() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -51,15 +64,7 @@ fn the_page_of_the_command_line_is_fresh() {
             assert!(wanted.contains(&call), "the page says nothing of `{verb}`");
         }
     }
-    if held != wanted {
-        let asked = std::env::var("MIPLESS_WRITE").is_ok_and(|value| value == "1");
-        assert!(
-            asked,
-            "{} is stale: bash .ci/fresh makes it fresh",
-            path.display()
-        );
-        fs::write(&path, wanted).expect("the page is written");
-    }
+    hold(&path, &held, &wanted);
 }
 
 #[test]
@@ -69,13 +74,5 @@ fn the_schema_of_the_protocol_is_fresh() {
     let held = fs::read_to_string(&path).unwrap_or_default();
     let held = held.replace("\r\n", "\n");
     let wanted = printed("mipless serve --schema");
-    if held != wanted {
-        let asked = std::env::var("MIPLESS_WRITE").is_ok_and(|value| value == "1");
-        assert!(
-            asked,
-            "{} is stale: bash .ci/fresh makes it fresh",
-            path.display()
-        );
-        fs::write(&path, wanted).expect("the schema is written");
-    }
+    hold(&path, &held, &wanted);
 }

@@ -1,27 +1,11 @@
 //! `compile` as a step of a build: it touches what changes, says what depends on what, and goes on.
 
-use crate::folder::{Folder, GRAPH};
-use image::{ExtendedColorType, ImageEncoder};
+use crate::folder::{Folder, GRAPH, WALL};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::Stdio;
 use std::time::{Duration, Instant, SystemTime};
-
-const WALL: &str = r#"{
-    "version": 1,
-    "name": "wall",
-    "nodes": { "tile": { "type": "image", "inputs": { "file": "tile.png" } } },
-    "outputs": { "out": { "node": "tile" } }
-}"#;
-
-fn picture(folder: &Folder, grey: u8) {
-    let mut file = Vec::new();
-    image::codecs::png::PngEncoder::new(&mut file)
-        .write_image(&[grey; 12], 2, 2, ExtendedColorType::Rgb8)
-        .expect("a PNG");
-    folder.write("tile.png", file);
-}
 
 /// When each file of a folder was written last.
 fn times(folder: &Folder, name: &str) -> BTreeMap<String, SystemTime> {
@@ -115,7 +99,7 @@ fn another_form_of_the_same_graph_stands_beside_it() {
 #[test]
 fn a_file_that_the_graph_reads_is_a_part_of_it() {
     let folder = Folder::new();
-    picture(&folder, 90);
+    folder.write_picture("tile.png", 90);
     folder.write("wall.json", WALL);
     let line = "compile wall.json --out out --method point --depfile out.d";
     folder.run(line).is(0);
@@ -128,7 +112,7 @@ fn a_file_that_the_graph_reads_is_a_part_of_it() {
     );
     assert_eq!(needed.replace("./", ""), "wall.json tile.png");
     let first = folder.read("out/wall.tables.bin");
-    picture(&folder, 200);
+    folder.write_picture("tile.png", 200);
     folder.run(line).is(0).says("out/wall.tables.bin");
     assert_ne!(first, folder.read("out/wall.tables.bin"));
     let source = &manifest(&folder, "out/wall.json")["source"];

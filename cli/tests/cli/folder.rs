@@ -1,5 +1,7 @@
 //! A folder of its own for each test, and what running the command in it gave.
 
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
 use serde_json::Value;
 use std::fs;
 use std::path::PathBuf;
@@ -26,6 +28,14 @@ pub(crate) const GRAPH: &str = r##"{
     "outputs": { "base_color": { "node": "color" }, "height": { "node": "noise" } }
 }"##;
 
+/// A graph that shows `tile.png`.
+pub(crate) const WALL: &str = r#"{
+    "version": 1,
+    "name": "wall",
+    "nodes": { "tile": { "type": "image", "inputs": { "file": "tile.png" } } },
+    "outputs": { "out": { "node": "tile" } }
+}"#;
+
 pub(crate) struct Folder(TempDir);
 
 impl Folder {
@@ -41,6 +51,15 @@ impl Folder {
 
     pub(crate) fn write(&self, name: &str, text: impl AsRef<[u8]>) {
         fs::write(self.path(name), text).expect("a file");
+    }
+
+    /// A picture of 2 × 2 pixels of one grey.
+    pub(crate) fn write_picture(&self, name: &str, grey: u8) {
+        let mut file = Vec::new();
+        PngEncoder::new(&mut file)
+            .write_image(&[grey; 12], 2, 2, ExtendedColorType::Rgb8)
+            .expect("a PNG");
+        self.write(name, file);
     }
 
     pub(crate) fn read(&self, name: &str) -> Vec<u8> {

@@ -1,26 +1,14 @@
 //! What a run reads it never writes over, two of its files are never one, and `--root` bounds what is
 //! read.
 
-use crate::folder::{Folder, GRAPH};
-use image::{ExtendedColorType, ImageEncoder};
+use crate::folder::{Folder, GRAPH, WALL};
 use std::fs;
 
 const SMALL: &str = "--size 8x8 --device cpu";
 
-const WALL: &str = r#"{
-    "version": 1,
-    "name": "wall",
-    "nodes": { "tile": { "type": "image", "inputs": { "file": "tile.png" } } },
-    "outputs": { "out": { "node": "tile" } }
-}"#;
-
 fn folder() -> Folder {
     let folder = Folder::new();
-    let mut file = Vec::new();
-    image::codecs::png::PngEncoder::new(&mut file)
-        .write_image(&[90; 12], 2, 2, ExtendedColorType::Rgb8)
-        .expect("a PNG");
-    folder.write("tile.png", file);
+    folder.write_picture("tile.png", 90);
     folder.write("wall.json", WALL);
     folder.write("picture.exr", GRAPH);
     folder

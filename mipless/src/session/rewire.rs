@@ -112,6 +112,16 @@ pub(super) fn redirect(
     removed
 }
 
+/// The nodes of a scope that use a sub-graph.
+fn users(recorder: &Recorder<'_>, scope: &Option<String>, name: &str) -> Vec<(String, NodeEntry)> {
+    let ty = format!("graph:{name}");
+    let nodes = recorder.body(scope).nodes.iter();
+    nodes
+        .filter(|(_, node)| node.ty == ty)
+        .map(|(name, node)| (name.clone(), node.clone()))
+        .collect()
+}
+
 /// What uses a sub-graph reads another output of it, or none.
 pub(super) fn follow_output(
     recorder: &mut Recorder<'_>,
@@ -120,14 +130,10 @@ pub(super) fn follow_output(
     to: Option<&str>,
 ) {
     let Some(name) = graph else { return };
-    let ty = format!("graph:{name}");
     for scope in scopes(recorder.document()) {
-        let users: Vec<String> = (recorder.body(&scope).nodes.iter())
-            .filter(|(_, node)| node.ty == ty)
-            .map(|(name, _)| name.clone())
-            .collect();
-        let reads =
-            |reference: &Reference| reference.output == from && users.contains(&reference.node);
+        let users = users(recorder, &scope, name);
+        let is_user = |node: &str| users.iter().any(|(user, _)| user == node);
+        let reads = |reference: &Reference| reference.output == from && is_user(&reference.node);
         let moved = |reference: &Reference| to.map(|to| Reference::to(reference.node.clone(), to));
         rebind(recorder, &scope, |binding| match binding {
             Binding::Node(reference) if reads(reference) => {
@@ -153,15 +159,12 @@ pub(super) fn follow_input(
     from: &str,
     to: Option<&str>,
 ) {
-    let Some(name) = graph else { return };
-    let ty = format!("graph:{name}");
+    let Some(graph) = graph else { return };
     for scope in scopes(recorder.document()) {
-        let users: Vec<(String, NodeEntry)> = (recorder.body(&scope).nodes.iter())
-            .filter(|(_, node)| node.ty == ty && node.inputs.contains_key(from))
-            .map(|(name, node)| (name.clone(), node.clone()))
-            .collect();
-        for (name, mut node) in users {
-            let (index, _, binding) = node.inputs.shift_remove_full(from).expect("it is bound");
+        for (name, mut node) in users(recorder, &scope, graph) {
+            let Some((index, _, binding)) = node.inputs.shift_remove_full(from) else {
+                continue;
+            };
             if let Some(to) = to {
                 // A binding to an input that was not there yet gives way.
                 let index = index.min(node.inputs.len());
