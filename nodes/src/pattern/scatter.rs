@@ -36,7 +36,7 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             each figure and for the ground, and summed. Where the footprint covers many cells, from √(σ₁σ₂) = 1.3 of them or 2.8 \
             along an axis, the sum fades to the mean over all figures.",
         accuracy: "The mean is within 0.005 until it fades, rotated footprints of 8:1 included, and then within \
-            0.05. Held by `nodes/tests/sources.rs` against dense sums.",
+            0.03. Held by `nodes/tests/sources.rs` against dense sums.",
         references: "Schacter & Ahuja 1979, *Random Pattern Generation Processes* (bombing). Owen 1956, \
             *Tables for Computing Bivariate Normal Probabilities*. Material Maker's `tiler` and Substance's \
             Tile Sampler scatter pictures.",

@@ -21,9 +21,9 @@ pub(super) static SPEC: NodeSpec = NodeSpec {
             Gaussian, exact but for the arcs, which are polygons of 16 edges. Where the footprint covers many \
             tiles, from √(σ₁σ₂) = 0.78 of them or 2.8 along an axis, the sum fades to the share of the plane \
             that is 1: each tile has the same, so that little is lost where the footprint is round.",
-        accuracy: "The mean is within 0.005 until it fades, rotated footprints of 8:1 included; round ones then \
-            lose up to 0.01, and thin ones along the rows of tiles up to 0.1. Held by \
-            `nodes/tests/sources.rs` against dense sums.",
+        accuracy: "The mean is within 0.005 until it fades, rotated footprints of 8:1 included. Then that of arcs \
+            is within 0.006 and that of triangles, whose tiles differ more, within 0.04 under thin footprints. \
+            Held by `nodes/tests/sources.rs` against dense sums.",
         references: "Truchet 1704, *Mémoire sur les combinaisons*; Smith 1987, *The Tiling Patterns of \
             Sebastien Truchet and the Topology of Structural Hierarchy* (arcs). Owen 1956, *Tables for \
             Computing Bivariate Normal Probabilities*.",

@@ -149,3 +149,31 @@ fn rays_are_filtered_away_from_their_centre_and_meet_in_their_share() {
         [1.0, 1.0, 0.0, 0.0, 1.0]
     );
 }
+
+/// Where the sums over things fade to what is to be expected of any.
+#[test]
+fn wide_and_thin_footprints_lose_little() {
+    for (json, most) in [
+        (graph("truchet", ""), 0.006),
+        (graph("truchet", r#""tile":"triangles""#), 0.04),
+        (graph("scatter", r#""output":"mask""#), 0.03),
+        (graph("scatter", r#""density":0.6,"output":"random""#), 0.03),
+    ] {
+        for (minor, ratio, degrees) in [
+            (0.4, 8.0, 0.0),
+            (0.4, 8.0, 90.0),
+            (0.6, 8.0, 20.0),
+            (2.0, 1.0, 0.0),
+        ] {
+            let found = errors(
+                &json,
+                &places(10, 40.0),
+                axes(minor, ratio, degrees),
+                0.06,
+                &[Method::Local],
+            )[0];
+            println!("{minor}, {ratio}:1 at {degrees}: {found:?}");
+            assert!(found.mean < most, "{minor}, {ratio}:1: {found:?}");
+        }
+    }
+}
