@@ -1,23 +1,21 @@
 //! The manifest: what a host needs to know of a compiled texture, as JSON, without reading the shader.
 
-mod schema;
+mod build;
 
-use crate::wgsl::{
-    BindingKind, EntryPoint, PIXELS_PER_ROW, Shader, Stage, TableForm, Tables, WORKGROUP_SIZE,
-};
-use crate::{Audit, Options, Texture};
+use crate::wgsl::{BindingKind, EntryPoint, Tables};
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema, json_schema};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-pub use schema::manifest_schema;
-
 /// The compiler that writes manifests.
 pub const COMPILER: &str = concat!("mipless ", env!("CARGO_PKG_VERSION"));
 
 /// A compiled texture.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Manifest {
     /// The compiler and its version.
     pub compiler: String,
@@ -40,6 +38,7 @@ pub struct Manifest {
     /// The structs that stand in buffers, and how they lie there.
     pub structs: Vec<ManifestStruct>,
     /// The entry point, if there is one.
+    #[schemars(schema_with = "entry_point")]
     pub entry_point: Option<EntryPoint>,
     /// How a compute entry point is dispatched.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -68,30 +67,36 @@ pub struct Manifest {
 }
 
 /// Where a texture came from.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestSource {
     /// The name of the graph's file, without folders.
     pub file: String,
     /// The SHA-256 of its bytes, in hexadecimal digits.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub sha256: String,
     /// What else was read, by the names in the graph.
     pub files: Vec<ManifestRead>,
     /// A digest of what the function and its tables depend on beside `files`: the compiler, the graph
     /// and the options.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub key: String,
 }
 
 /// A file that a graph reads.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestRead {
     /// The name that the graph says.
     pub name: String,
     /// The SHA-256 of its bytes.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub sha256: String,
 }
 
 /// An argument of the texture's function.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestArgument {
     /// Its name.
     pub name: String,
@@ -101,7 +106,8 @@ pub struct ManifestArgument {
 }
 
 /// A struct in a buffer.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestStruct {
     /// Its name.
     pub name: String,
@@ -112,7 +118,8 @@ pub struct ManifestStruct {
 }
 
 /// A member of a struct.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestField {
     /// Its name.
     pub name: String,
@@ -125,7 +132,8 @@ pub struct ManifestField {
 }
 
 /// How a compute entry point is dispatched.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestDispatch {
     /// The invocations of a workgroup, along x, y and z.
     pub workgroup_size: [u32; 3],
@@ -138,7 +146,8 @@ pub struct ManifestDispatch {
 }
 
 /// A parameter.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestParameter {
     /// The input's name in the graph.
     pub name: String,
@@ -171,7 +180,8 @@ pub struct ManifestParameter {
 }
 
 /// An output.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestOutput {
     /// The output's name in the graph.
     pub name: String,
@@ -195,7 +205,8 @@ pub struct ManifestOutput {
 }
 
 /// The error of an output where pixels have one size.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestError {
     /// The width of a pixel, in uv.
     pub pixel: f32,
@@ -206,7 +217,8 @@ pub struct ManifestError {
 }
 
 /// A buffer that the shader reads or writes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestBinding {
     /// The group.
     pub group: u32,
@@ -215,6 +227,7 @@ pub struct ManifestBinding {
     /// The variable's name.
     pub name: String,
     /// What it holds.
+    #[schemars(schema_with = "kind")]
     pub kind: BindingKind,
     /// `uniform`, `storage-read` or `storage-read-write`.
     pub access: &'static str,
@@ -225,7 +238,8 @@ pub struct ManifestBinding {
 }
 
 /// The contents of a buffer.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestData {
     /// The type of a number.
     pub scalar: &'static str,
@@ -234,11 +248,13 @@ pub struct ManifestData {
     /// How many numbers there are.
     pub length: u32,
     /// The SHA-256 of its bytes.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub sha256: String,
 }
 
 /// A texture that holds the tables row by row, one number a texel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestTexture {
     /// Its columns.
     pub width: u32,
@@ -249,7 +265,8 @@ pub struct ManifestTexture {
 }
 
 /// A table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestTable {
     /// A readable name.
     pub name: String,
@@ -264,13 +281,16 @@ pub struct ManifestTable {
 }
 
 /// What is written for a target.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct ManifestTarget {
     /// The file.
     pub file: String,
     /// The SHA-256 of its bytes.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub sha256: String,
     /// A digest of the options that concern this text alone.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub key: String,
     /// The language and its version.
     pub language: &'static str,
@@ -279,6 +299,7 @@ pub struct ManifestTarget {
     pub function: Option<String>,
     /// The entry point as this text calls it.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(schema_with = "entry_point")]
     pub entry_point: Option<EntryPoint>,
     /// Every buffer, in the order of the manifest's `bindings`.
     pub bindings: Vec<TargetBinding>,
@@ -294,9 +315,11 @@ pub struct ManifestTarget {
 }
 
 /// A buffer as a target's text calls it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct TargetBinding {
     /// What it holds.
+    #[schemars(schema_with = "kind")]
     pub kind: BindingKind,
     /// The variable's name; absent where there are no names.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -312,7 +335,8 @@ pub struct TargetBinding {
 }
 
 /// Something at a location.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct TargetLocation {
     /// What it is: `uv`, `xyz`, or the name of an output.
     pub of: String,
@@ -323,68 +347,44 @@ pub struct TargetLocation {
 }
 
 /// Where Metal's shaders read the byte lengths of arrays.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct BufferSizes {
     /// The index of the buffer.
     pub buffer: u32,
     /// The arrays whose lengths it holds, in order, each a 32-bit unsigned integer.
+    #[schemars(schema_with = "kinds")]
     pub of: Vec<BindingKind>,
 }
 
-impl Manifest {
-    /// The manifest of a texture's shader, and of what its audit has found; without files and targets.
-    pub fn new(
-        texture: &Texture,
-        shader: &Shader,
-        options: &Options,
-        audit: Option<&Audit>,
-    ) -> Self {
-        let structs = structs(shader);
-        let mut arguments = vec![argument("footprint", "Footprint")];
-        if shader.position {
-            arguments.push(argument("position", "Position"));
-        }
-        if !shader.parameters.is_empty() {
-            arguments.push(argument("parameters", &shader.parameters_struct));
-        }
-        let entry = shader.entry_point.as_ref();
-        let is_compute = entry.is_some_and(|entry| entry.stage == Stage::Compute);
-        let footprint_bytes = if shader.position { 96 } else { 32 };
-        let data = shader.tables.as_ref().map(|tables| ManifestData {
-            scalar: "f32",
-            byte_order: "little-endian",
-            length: tables.entries.iter().map(|entry| entry.2).sum(),
-            sha256: sha256(&bytes_of(tables)),
-        });
-        Self {
-            compiler: COMPILER.to_owned(),
-            source: None,
-            method: options.method.to_string(),
-            pixel_filter: options.filter.to_string(),
-            function: shader.function.clone(),
-            arguments,
-            result: shader.outputs_struct.clone(),
-            shading: shader.shading.clone(),
-            structs,
-            entry_point: shader.entry_point.clone(),
-            dispatch: is_compute.then(|| ManifestDispatch {
-                workgroup_size: [WORKGROUP_SIZE, 1, 1],
-                row: PIXELS_PER_ROW,
-                footprint_bytes,
-                output_numbers: shader.scalars_per_pixel() as u32,
-            }),
-            parameters: parameters(texture, shader),
-            parameters_size: shader.parameters_size,
-            outputs: outputs(texture, shader, audit),
-            bindings: bindings(shader, footprint_bytes),
-            tables_data: data,
-            tables_texture: None,
-            tables: tables(shader),
-            targets: BTreeMap::new(),
-            files: BTreeMap::new(),
-        }
-    }
+/// What bindings hold, and entry points: types of the compiler, which knows of no schemas.
+fn kind(_: &mut schemars::SchemaGenerator) -> Schema {
+    json_schema!({ "enum": ["footprints", "parameters", "outputs", "tables"] })
+}
 
+fn kinds(generator: &mut schemars::SchemaGenerator) -> Schema {
+    json_schema!({ "type": "array", "items": kind(generator) })
+}
+
+fn entry_point(_: &mut schemars::SchemaGenerator) -> Schema {
+    json_schema!({
+        "type": ["object", "null"],
+        "required": ["name", "stage"],
+        "additionalProperties": false,
+        "properties": {
+            "name": { "type": "string", "description": "The function's name." },
+            "stage": { "enum": ["fragment", "compute"] },
+        },
+    })
+}
+
+/// The JSON Schema (draft 2020-12) of manifests, for the tools that read them.
+pub fn manifest_schema() -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    settings.into_generator().into_root_schema_for::<Manifest>()
+}
+
+impl Manifest {
     /// The manifest as JSON, indented, ending in a newline.
     pub fn to_json(&self) -> String {
         let mut text = serde_json::to_string_pretty(self).expect("the manifest has plain keys");
@@ -406,163 +406,4 @@ pub fn sha256(bytes: &[u8]) -> String {
         write!(text, "{byte:02x}").expect("a string takes all text");
         text
     })
-}
-
-fn argument(name: &str, ty: &str) -> ManifestArgument {
-    ManifestArgument {
-        name: name.to_owned(),
-        ty: ty.to_owned(),
-    }
-}
-
-/// The structs that hosts write.
-fn structs(shader: &Shader) -> Vec<ManifestStruct> {
-    let field = |name: &str, scalar: &str, components: u32, offset: u32| ManifestField {
-        name: name.to_owned(),
-        scalar: scalar.to_owned(),
-        components,
-        offset,
-    };
-    let layout = |name: &str, size: u32, fields: Vec<ManifestField>| ManifestStruct {
-        name: name.to_owned(),
-        size,
-        fields,
-    };
-    let mut structs = vec![layout(
-        "Footprint",
-        32,
-        vec![
-            field("cell", "i32", 2, 0),
-            field("uv", "f32", 2, 8),
-            field("du", "f32", 2, 16),
-            field("dv", "f32", 2, 24),
-        ],
-    )];
-    if shader.position {
-        let position = vec![
-            field("cell", "i32", 3, 0),
-            field("xyz", "f32", 3, 16),
-            field("dx", "f32", 3, 32),
-            field("dy", "f32", 3, 48),
-        ];
-        structs.push(layout("Position", 64, position));
-        let pixel = vec![
-            field("footprint", "Footprint", 1, 0),
-            field("position", "Position", 1, 32),
-        ];
-        structs.push(layout("Pixel", 96, pixel));
-    }
-    if !shader.parameters.is_empty() {
-        let fields = shader.parameters.iter().map(|p| {
-            let components = p.ty.components() as u32;
-            field(&p.field, p.scalar.name(), components, p.offset)
-        });
-        structs.push(layout(
-            &shader.parameters_struct,
-            shader.parameters_size,
-            fields.collect(),
-        ));
-    }
-    structs
-}
-
-fn parameters(texture: &Texture, shader: &Shader) -> Vec<ManifestParameter> {
-    let parameter = |p: &crate::wgsl::ParameterField| {
-        let said = texture.parameters().iter().find(|said| said.name == p.name);
-        ManifestParameter {
-            name: p.name.clone(),
-            field: p.field.clone(),
-            ty: p.ty.name(),
-            scalar: p.scalar.name(),
-            offset: p.offset,
-            default: p.default.clone(),
-            min: said.and_then(|said| said.min),
-            max: said.and_then(|said| said.max),
-            soft_min: said.and_then(|said| said.soft_min),
-            soft_max: said.and_then(|said| said.soft_max),
-            doc: said.map_or(String::new(), |said| said.doc.clone()),
-        }
-    };
-    shader.parameters.iter().map(parameter).collect()
-}
-
-fn outputs(texture: &Texture, shader: &Shader, audit: Option<&Audit>) -> Vec<ManifestOutput> {
-    let output = |o: &crate::wgsl::OutputField| {
-        let said = texture
-            .outputs()
-            .iter()
-            .zip(0..)
-            .find(|(said, _)| said.name == o.name);
-        let index = said.map(|(_, index)| index);
-        let audited = audit
-            .filter(|audit| !audit.is_too_large && !o.variance)
-            .map(|audit| audit.outputs.iter().find(|a| Some(a.output) == index));
-        let is_color = !o.variance && said.is_some_and(|(said, _)| texture.is_color(said));
-        let errors = audited.flatten().map_or(&[][..], |audited| &audited.bands);
-        ManifestOutput {
-            name: o.name.clone(),
-            field: o.field.clone(),
-            ty: o.ty.name(),
-            variance: o.variance,
-            first: o.first,
-            color_space: if is_color { "linear-rec709" } else { "data" },
-            // What an audit does not look at is exact.
-            predicted_error: audited.map(|audited| audited.map_or(0.0, |a| rounded(a.predicted()))),
-            errors: (errors.iter())
-                .map(|band| ManifestError {
-                    pixel: band.size,
-                    error: rounded(band.auto),
-                    point: rounded(band.point),
-                })
-                .collect(),
-        }
-    };
-    shader.outputs.iter().map(output).collect()
-}
-
-/// An error in steps of 10⁻⁵, which no display shows: further digits are those of the machine that
-/// measured it.
-fn rounded(error: f64) -> f64 {
-    (error * 1e5).round() / 1e5
-}
-
-fn bindings(shader: &Shader, footprint_bytes: u32) -> Vec<ManifestBinding> {
-    let binding = |b: &crate::wgsl::Binding| {
-        let (access, element, stride) = match b.kind {
-            BindingKind::Footprints if shader.position => {
-                ("storage-read", "Pixel", footprint_bytes)
-            }
-            BindingKind::Footprints => ("storage-read", "Footprint", footprint_bytes),
-            BindingKind::Parameters => (
-                "uniform",
-                shader.parameters_struct.as_str(),
-                shader.parameters_size,
-            ),
-            BindingKind::Outputs => ("storage-read-write", "f32", 4),
-            BindingKind::Tables if shader.table_form != TableForm::Storage => ("texture", "f32", 4),
-            BindingKind::Tables => ("storage-read", "f32", 4),
-        };
-        ManifestBinding {
-            group: b.group,
-            binding: b.binding,
-            name: b.name.clone(),
-            kind: b.kind,
-            access,
-            element: element.to_owned(),
-            stride,
-        }
-    };
-    shader.bindings.iter().map(binding).collect()
-}
-
-fn tables(shader: &Shader) -> Vec<ManifestTable> {
-    let all = shader.tables.iter();
-    all.flat_map(|tables| tables.entries.iter().zip(&tables.numbers))
-        .map(|((name, first, length), numbers)| ManifestTable {
-            name: name.clone(),
-            first: *first,
-            length: *length,
-            error: numbers.error(),
-        })
-        .collect()
 }

@@ -69,6 +69,7 @@ fn main() {
         .map(|entry| entry.expect("an entry of the folder").path())
         .filter(|path| Format::of(path).is_some())
         .collect();
+    assert!(!paths.is_empty(), "no documents in {folders:?}");
     paths.sort();
     set_hook(Box::new(|_| {}));
     let outcomes: Vec<Outcome> = (paths.par_iter())

@@ -76,7 +76,7 @@ fn missing(artifact: &Artifact) -> Vec<String> {
 
 fn invalid(manifest: &Manifest) -> Vec<String> {
     let schema = mipless::manifest::manifest_schema();
-    let validator = jsonschema::validator_for(&schema).expect("the schema is one");
+    let validator = jsonschema::validator_for(schema.as_value()).expect("the schema is one");
     let value: serde_json::Value = serde_json::from_str(&manifest.to_json()).expect("JSON");
     let errors = validator.iter_errors(&value);
     errors
